@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use cvtcycle::config::cycle::{self, Cycle, Format};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
+use cvtcycle::config::setup::contacts::{self, KnownContact};
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
 use cvtcycle::explain::key_json;
@@ -98,6 +99,8 @@ pub enum Shown {
     Cycle(Box<Cycle>),
     /// Kind, title and keys of a file.
     Keys(InputKind, String, Vec<KeyInfo>),
+    /// Title and keys of a lubricant, and what is known of its friction.
+    Fluid(String, Vec<KeyInfo>, Vec<KnownContact>, Vec<String>),
 }
 
 impl Execute for ShowArgs {
@@ -106,6 +109,7 @@ impl Execute for ShowArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Shown> {
         let (kind, word) = problems.take(InputKind::detect(&self.name, false))?;
         let by_name = |found: Problems| cite("NAME", found);
+        let mut known = None;
         let (title, mut keys) = match kind {
             InputKind::Cycle => {
                 let columns = self.columns.get(problems);
@@ -123,6 +127,8 @@ impl Execute for ShowArgs {
             }
             InputKind::Lubricant => {
                 let (oil, keys) = problems.take(setup::load_lubricant(&word).map_err(by_name))?;
+                let doubts = oil.benches.iter().flat_map(|bench| bench.doubts.clone());
+                known = Some((contacts::contacts(&oil, &keys, ""), doubts.collect()));
                 (oil.title, keys)
             }
             InputKind::Class | InputKind::Rig => embedded(&word),
@@ -151,7 +157,10 @@ impl Execute for ShowArgs {
         }
         let status: Vec<String> = self.status.iter().map(|status| status.word()).collect();
         keys.retain(|info| status.is_empty() || status.contains(&info.status));
-        Some(Shown::Keys(kind, title, keys))
+        Some(match known {
+            Some((known, doubts)) => Shown::Fluid(title, keys, known, doubts),
+            None => Shown::Keys(kind, title, keys),
+        })
     }
 
     fn run(&self, shown: Shown, terminal: Terminal) -> CommandResult {
@@ -170,6 +179,29 @@ impl Execute for ShowArgs {
                     &json!({ "name": self.name, "kind": kind, "title": title, "keys": lines }),
                 )
             }
+            (Shown::Fluid(title, keys, known, doubts), true) => {
+                let lines: Vec<Value> = keys.iter().map(key_json).collect();
+                let contact = |own: &KnownContact| json!({ "contact": own.contact.name(), "origin": own.origin.word(), "words": own.words });
+                let known: Vec<Value> = known.iter().map(contact).collect();
+                let kind = InputKind::Lubricant.word();
+                CommandOutput::json(
+                    &json!({ "name": self.name, "kind": kind, "title": title, "friction": known, "doubts": doubts, "keys": lines }),
+                )
+            }
+            (Shown::Fluid(title, keys, known, doubts), false) => {
+                let body = match keys.is_empty() {
+                    true => "\nno value has this status\n".to_owned(),
+                    false => tables(&keys, paint) + &counts(&keys),
+                };
+                let heading = paint.heading(&self.name);
+                let known = match self.status.is_empty() {
+                    true => friction(&known, &doubts),
+                    false => String::new(),
+                };
+                Ok(CommandOutput::text(format!(
+                    "{heading}  {title}\n{known}{body}"
+                )))
+            }
             (Shown::Keys(_, title, keys), false) => {
                 let body = match keys.is_empty() {
                     true => "\nno value has this status\n".to_owned(),
@@ -180,6 +212,24 @@ impl Execute for ShowArgs {
             }
         }
     }
+}
+
+/// What was measured of a fluid's friction, contact by contact, and doubts about its tables.
+fn friction(known: &[KnownContact], doubts: &[String]) -> String {
+    let mut text = String::from("\nFriction by contact:\n");
+    for own in known {
+        let line = format!(
+            "{}: {}: {}",
+            own.contact.words(),
+            own.origin.word(),
+            own.words
+        );
+        text += &wrapped(&line, "  ");
+    }
+    for doubt in doubts {
+        text += &wrapped(doubt, "  doubt: ");
+    }
+    text
 }
 
 /// Title and keys of an embedded class or rig.

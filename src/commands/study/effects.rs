@@ -70,7 +70,11 @@ fn grid(output: &OutputAnswer) -> String {
             } else {
                 ""
             };
-            format!("{mark}{}", fixed(*x, 3))
+            let of_cell = matrix.ends.get(i).and_then(|row| *row.get(k)?);
+            let ends = of_cell.map_or_else(String::new, |[low, high]| {
+                format!(" [{}, {}]", fixed(low, 3), fixed(high, 3))
+            });
+            format!("{mark}{}{ends}", fixed(*x, 3))
         };
         let cells = row.iter().enumerate().map(cell);
         table.row([name.clone()].into_iter().chain(cells));
@@ -80,7 +84,11 @@ fn grid(output: &OutputAnswer) -> String {
         MinimumOver::Row => " of its row",
         MinimumOver::Column => " of its column",
     };
-    format!("{}  * least{scope}\n", table.text())
+    let ranges = match matrix.ends.is_empty() {
+        true => "",
+        false => "; [what is known of the frictions, two standard deviations]",
+    };
+    format!("{}  * least{scope}{ranges}\n", table.text())
 }
 
 /// Every level of each factor, ordered by the width of the bar.

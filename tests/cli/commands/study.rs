@@ -52,7 +52,9 @@ fn a_grid_of_two_factors_prints_its_matrix() {
         "{shown}"
     );
     let file = fs::read_to_string(dir.path().join("grid/matrix.csv")).unwrap();
-    assert!(file.starts_with("output,unit,car,row_factor,row,column_factor,column,value\n"));
+    assert!(
+        file.starts_with("output,unit,car,row_factor,row,column_factor,column,value,low,high\n")
+    );
     assert_eq!((file.lines().count() - 1) % 35, 0);
 }
 
@@ -98,6 +100,30 @@ fn the_plan_of_three_fluids_is_one_matrix() {
     let by_hand = 100.0 * (fuel(&["--lubricant", "dexron_iii"]) / fuel(&[]) - 1.0);
     let cell = matrix["cells"][1][2].as_f64().unwrap();
     assert!((cell - by_hand).abs() < 1e-9, "{cell} {by_hand}");
+    // GF-1 once more: each contact alone at the ends of what is known of it, the root of the sum of the squares. The reference has no range.
+    let place = |contact: &str, place: &str| {
+        let set = format!("lubricant.friction.{contact}.place={place}");
+        100.0 * (fuel(&["--lubricant", "dexron_iii", "--set", &set]) / fuel(&[]) - 1.0) - by_hand
+    };
+    let mut sums = [0.0_f64; 2];
+    for contact in ["bands", "micro_slip", "macro_slip"] {
+        let ends = ["-1", "1"].map(|end| place(contact, end));
+        let least = ends.into_iter().fold(0.0, f64::min);
+        let largest = ends.into_iter().fold(0.0, f64::max);
+        sums = [sums[0] + least * least, sums[1] + largest * largest];
+    }
+    let end = |oil: usize, k: usize| matrix["ends"][1][oil][k].as_f64().unwrap();
+    assert!((end(2, 0) - (by_hand - sums[0].sqrt())).abs() < 1e-9);
+    assert!((end(2, 1) - (by_hand + sums[1].sqrt())).abs() < 1e-9);
+    assert!(end(2, 0) < cell && cell < end(2, 1));
+    assert_eq!([end(0, 0), end(0, 1)], [0.0; 2]);
+    let notes = found["notes"].as_array().unwrap();
+    let of_two = "oil dexron_ii, dexron_iii: friction not measured with this fluid: bands";
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.as_str().unwrap().starts_with(of_two))
+    );
     // The car's own oil as the replacement.
     assert!(
         matrix["cells"]

@@ -133,7 +133,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 31] = [
+const NEEDS: [(&str, &[&str], &str); 39] = [
     (
         "pulley_bearing.secondary_nm_per_rpm",
         &["transmission.cvt.pulley_bearing.secondary_nm_per_rpm=0.0005"],
@@ -292,6 +292,58 @@ const NEEDS: [(&str, &[&str], &str); 31] = [
         "as the lubrication flow",
     ),
     (
+        "friction.bands.spread",
+        &[
+            "lubricant.friction.bands.spread=0.2",
+            "lubricant.friction.bands.place=1",
+        ],
+        "width of what is known, in whose middle a friction is",
+    ),
+    (
+        "friction.bands.place",
+        &["lubricant.friction.bands.spread=0.2"],
+        "place within what is known, which is all for the reference fluid",
+    ),
+    (
+        "friction.micro_slip.spread",
+        &[
+            "lubricant.friction.micro_slip.spread=0.2",
+            "lubricant.friction.micro_slip.place=1",
+        ],
+        "width of what is known, in whose middle a friction is",
+    ),
+    (
+        "friction.micro_slip.place",
+        &["lubricant.friction.micro_slip.spread=0.2"],
+        "place within what is known, which is all for the reference fluid",
+    ),
+    (
+        "friction.macro_slip.spread",
+        &[
+            "lubricant.friction.macro_slip.spread=0.2",
+            "lubricant.friction.macro_slip.place=1",
+        ],
+        "width of what is known, in whose middle a friction is",
+    ),
+    (
+        "friction.macro_slip.place",
+        &["lubricant.friction.macro_slip.spread=0.2"],
+        "place within what is known, which is all for the reference fluid",
+    ),
+    (
+        "friction.gears.spread",
+        &[
+            "lubricant.friction.gears.spread=0.2",
+            "lubricant.friction.gears.place=1",
+        ],
+        "width of what is known, in whose middle a friction is",
+    ),
+    (
+        "friction.gears.place",
+        &["lubricant.friction.gears.spread=0.2"],
+        "place within what is known, which is all for the reference fluid",
+    ),
+    (
         "engine.highest_rpm",
         &["engine.highest_rpm=3000"],
         "bounds engine speed; the cycles stay below it",
@@ -360,7 +412,13 @@ fn no_effect(name: &str, key: &str) -> Option<&'static str> {
         if fluid {
             return Some("friction of belt contacts means nothing in an engine");
         }
-        if key.starts_with("lubricant.") && !name.ends_with("cvt") {
+        if key.ends_with("pressure_mpa") || key.ends_with("slip_percent") {
+            return Some("where a table is read, and no shipped fluid has one");
+        }
+        if key.starts_with("lubricant.")
+            && !name.ends_with("cvt")
+            && !key.contains("friction.gears.")
+        {
             return Some("friction of belt contacts means nothing in a manual box");
         }
     }

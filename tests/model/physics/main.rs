@@ -22,6 +22,7 @@ mod dead_inputs;
 mod electric_pump;
 mod engine_library;
 mod equations;
+mod fluids;
 mod forward;
 mod held;
 mod gtr15;

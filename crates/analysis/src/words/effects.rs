@@ -18,7 +18,9 @@ pub(super) fn decided(output: &OutputAnswer, answer: &Answer) -> Option<String> 
         return largest_swing(tornado, unit);
     }
     if let Some(matrix) = &output.matrix {
-        return least(matrix, &output.unit);
+        let words = [least(matrix, &output.unit), open_order(matrix)];
+        let words: Vec<String> = words.into_iter().flatten().collect();
+        return (!words.is_empty()).then(|| words.join(" "));
     }
     let summary = output.summary.as_ref()?;
     match &output.information {
@@ -100,6 +102,53 @@ fn least(matrix: &GridMatrix, unit: &str) -> Option<String> {
         |(choice, at): &(usize, Vec<&str>)| format!("{} at {}", choices[*choice], at.join(", "));
     let parts: Vec<String> = chosen.iter().map(part).collect();
     (!parts.is_empty()).then(|| format!("Least by {condition}: {}.", parts.join("; ")))
+}
+
+/// Where what is known of the frictions leaves open which number of a matrix is the least.
+fn open_order(matrix: &GridMatrix) -> Option<String> {
+    if matrix.ends.is_empty() || matrix.least_of == MinimumOver::All {
+        return None;
+    }
+    let by_row = matrix.least_of == MinimumOver::Row;
+    let (conditions, condition) = match by_row {
+        true => (&matrix.rows, &matrix.factors[0]),
+        false => (&matrix.columns, &matrix.factors[1]),
+    };
+    let choices = match by_row {
+        true => matrix.columns.len(),
+        false => matrix.rows.len(),
+    };
+    let ends = |at: usize, choice: usize| {
+        let [i, k] = if by_row { [at, choice] } else { [choice, at] };
+        *matrix.ends.get(i)?.get(k)?
+    };
+    let is_open = |at: &usize| {
+        let place = matrix
+            .least
+            .iter()
+            .find(|place| place[usize::from(!by_row)] == *at);
+        let best = place.map(|place| place[usize::from(by_row)]);
+        let Some((best, [_, high])) = best.and_then(|best| Some((best, ends(*at, best)?))) else {
+            return false;
+        };
+        let mut others = (0..choices).filter(|choice| *choice != best);
+        others.any(|other| ends(*at, other).is_some_and(|[low, _]| low <= high))
+    };
+    let open: Vec<&str> = (0..conditions.len())
+        .filter(is_open)
+        .map(|at| conditions[at].as_str())
+        .collect();
+    let ranges = "the ranges of what is known of the frictions";
+    Some(match (open.len(), conditions.len()) {
+        (0, _) => format!("That order holds over {ranges}."),
+        (n, all) if n == all => {
+            format!("Which one is least is open at every {condition}: {ranges} overlap.")
+        }
+        _ => format!(
+            "At {} {ranges} overlap: which one is least is open there.",
+            open.join(", ")
+        ),
+    })
 }
 
 /// Width of the interval of a share from which on it says next to nothing.
@@ -274,7 +323,32 @@ mod tests {
             cells: cells.map(|row| row.map(Some).to_vec()).to_vec(),
             least_of,
             least: least.to_vec(),
+            ends: Vec::new(),
         }
+    }
+
+    /// Property: the order is open exactly where the range of the least overlaps another one.
+    #[test]
+    fn an_order_within_its_ranges_is_open() {
+        let mut of = matrix(
+            [[0.4, -0.5], [0.1, 0.0]],
+            MinimumOver::Row,
+            &[[0, 1], [1, 1]],
+        );
+        assert_eq!(open_order(&of), None);
+        let range = |x: f64, half: f64| Some([x - half, x + half]);
+        of.ends = vec![
+            vec![range(0.4, 0.3), range(-0.5, 0.3)],
+            vec![range(0.1, 0.3), range(0.0, 0.0)],
+        ];
+        let words = open_order(&of).unwrap();
+        assert!(words.starts_with("At 40 \u{b0}C the ranges"), "{words}");
+        of.ends[1][0] = range(0.1, 0.05);
+        assert!(open_order(&of).unwrap().starts_with("That order holds"));
+        of.ends[0][0] = range(0.4, 2.0);
+        of.ends[1][0] = range(0.1, 2.0);
+        let words = open_order(&of).unwrap();
+        assert!(words.contains("is open at every ambient"), "{words}");
     }
 
     #[test]

@@ -42,6 +42,8 @@ pub struct Column {
     pub hint: &'static str,
     /// True if it is a column of its group in another unit, which lists of the columns leave out.
     pub is_alias: bool,
+    /// True of a column that says something of the value of a table, and spans no axis of its grid.
+    pub is_beside: bool,
 }
 
 impl Column {
@@ -57,6 +59,16 @@ impl Column {
             allowed: "",
             hint: "",
             is_alias: false,
+            is_beside: false,
+        }
+    }
+
+    /// The column says something of the value of a table.
+    #[must_use]
+    pub fn beside(self) -> Self {
+        Column {
+            is_beside: true,
+            ..self
         }
     }
 

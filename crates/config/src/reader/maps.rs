@@ -103,7 +103,7 @@ fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Map
     let unreadable = |why: ReadError| {
         let problem = Problem::unreadable(format!("cannot read `{file}`: {why}"))
             .allowed(why.allowed("a readable CSV file"))
-            .hint(why.hint("the path is relative to the vehicle file"));
+            .hint(why.hint("the path is relative to the file that names it"));
         s.report_at(key, problem);
     };
     let mut make = || {
@@ -181,6 +181,10 @@ pub(crate) fn file_table(
         let column = match own.is_like.is_empty() {
             true => column,
             false => column.alias(),
+        };
+        let column = match own.is_beside {
+            true => column.beside(),
+            false => column,
         };
         // A cell of a matrix without a value is a hole where there may be some.
         let column = match table.has_holes && own.group == table.value_group() {

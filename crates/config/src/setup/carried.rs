@@ -1,6 +1,6 @@
 //! A car with every file that it is read from, to be read again where these files are not: in an FMU.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Files, Kind, NamedBy, Options, Setup, is_twin, read, read_twin, stem, text_of};
 use crate::files::bounded::{self, ReadError};
-use crate::{Override, Problem, Problems, decode};
+use crate::{KeyInfo, Override, Problem, Problems, decode};
 
 /// Name of the list of the files.
 pub const LIST: &str = "car.json";
@@ -104,7 +104,20 @@ impl CarriedCar {
             ("lubricant", oil, &mut list.lubricant),
             ("engine_oil", engine_oil, &mut list.engine_oil),
         ] {
-            let (_, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
+            let (_, mut text, disk) = text_of(word, Kind::Lubricant, options.named_by)?;
+            for (number, path) in tables(&setup.keys, folder).enumerate() {
+                let Ok(bytes) = disk.read(path) else {
+                    continue; // it has been read: gone since
+                };
+                // Beside the fluid's file, under a name of its own.
+                let name = Path::new(path).file_name().unwrap_or_default();
+                let name = format!("{number}_{}", name.to_string_lossy());
+                for quote in ['"', '\''] {
+                    let [old, new] = [path, name.as_str()].map(|of| format!("{quote}{of}{quote}"));
+                    text = text.replace(&old, &new);
+                }
+                keep(folder, &name, bytes);
+            }
             *place = keep(folder, &(stem(word) + ".toml"), text.into_bytes());
         }
         let kept = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
@@ -126,6 +139,21 @@ impl CarriedCar {
         files.push((LIST.to_owned(), list));
         files
     }
+}
+
+/// Paths of the tables of friction that a fluid names, each once.
+fn tables<'k>(keys: &'k [KeyInfo], fluid: &'k str) -> impl Iterator<Item = &'k str> {
+    let is_table = move |info: &&KeyInfo| {
+        let own = info.key.strip_prefix(fluid);
+        own.is_some_and(|own| own.starts_with(".friction.") && own.ends_with(".table"))
+            && !info.value.is_empty()
+    };
+    let paths: BTreeSet<&str> = keys
+        .iter()
+        .filter(is_table)
+        .map(|info| info.value.as_str())
+        .collect();
+    paths.into_iter()
 }
 
 /// Reads the car whose files are in a folder.

@@ -90,7 +90,8 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
     let [.., ratio] = &of_box;
     let first = ratio.iter().cloned().chain(of_fuel);
     let others = all.into_iter().chain(of_box.clone().into_iter().take(5));
-    first.chain(others.flatten()).collect()
+    let of_oil = super::contacts::doubts(setup.vehicle.oils().0, &setup.keys);
+    first.chain(others.flatten()).chain(of_oil).collect()
 }
 
 /// What the points of a measured map of fuel let doubt.

@@ -1,9 +1,10 @@
 //! The documents of a car, and one reading of them.
 
+use super::contacts;
 use super::like::resolve;
 use super::twin::{TwinTable, twin};
 use super::{
-    Files, Kind, NamedBy, Options, Origin, ParamSet, is_path, is_twin, load_lubricant,
+    Disk, Files, Kind, NamedBy, Options, Origin, ParamSet, is_path, is_twin, load_lubricant,
     read_lubricant, stem, text_of,
 };
 use crate::files::TableCache;
@@ -47,7 +48,9 @@ pub(super) struct Frame {
     pub name: String,
     /// Names or paths of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
-    pub files: TableCache,
+    files: TableCache,
+    /// Where the tables are that the fluids' files name: beside them.
+    fluid_files: [TableCache; 2],
     formulation: Formulation,
     /// Friction of the vehicle's own transmission oil where another oil is in its place.
     own_friction: Option<Friction>,
@@ -107,7 +110,10 @@ impl Inputs {
                 Argument::EngineOil,
             ),
         ];
-        let [(oil, oil_word), (engine_oil, engine_oil_word)] = [
+        let [
+            (oil, oil_word, oil_disk),
+            (engine_oil, engine_oil_word, engine_oil_disk),
+        ] = [
             fluid_file(&words[0], options, Target::Lubricant),
             fluid_file(&words[1], options, Target::EngineOil),
         ];
@@ -119,6 +125,7 @@ impl Inputs {
             name,
             fluids: [oil_word, engine_oil_word],
             files,
+            fluid_files: [oil_disk, engine_oil_disk].map(|disk| TableCache::new(Box::new(disk))),
             formulation: options.formulation,
             own_friction,
         };
@@ -151,8 +158,7 @@ impl Inputs {
     /// All problems of its files and of the overrides.
     pub fn validate(self) -> Result<(Validated, Assembled), Problems> {
         let documents = self.files.each_ref().map(|input| input.document.as_ref());
-        let reader = |document| Reader::new(document).with_files(&self.frame.files);
-        let readers = documents.map(|document| document.map(reader));
+        let readers = self.frame.readers(&documents);
         let assembled = self.frame.assemble(&readers);
         let mut problems = Problems::new();
         let mut keys = Vec::new();
@@ -237,6 +243,15 @@ impl Inputs {
 }
 
 impl Frame {
+    /// Readers of the documents of a car, in the order of [`Target::CAR`].
+    pub fn readers<'d>(&'d self, documents: &[Option<&'d Document>; 3]) -> [Option<Reader<'d>>; 3] {
+        let [oil, engine_oil] = &self.fluid_files;
+        let files = [&self.files, oil, engine_oil];
+        std::array::from_fn(|k| {
+            documents[k].map(|document| Reader::new(document).with_files(files[k]))
+        })
+    }
+
     /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it.
     ///
     /// # Errors
@@ -276,13 +291,17 @@ impl Frame {
     }
 
     /// Notes for readers of the results of a car.
-    pub fn notes(&self, vehicle: &Vehicle) -> Vec<String> {
+    pub fn notes(&self, vehicle: &Vehicle, keys: &[KeyInfo]) -> Vec<String> {
         let transmission = vehicle.transmission();
-        let same = self.own_friction == Some(vehicle.oils().0.friction);
-        let mut notes = match transmission.is_cvt() && same {
+        let oil = vehicle.oils().0;
+        let own = self.own_friction.filter(|_| transmission.is_cvt());
+        let mut notes = match own == Some(oil.friction) {
             true => vec![SAME_FRICTION.to_owned()],
             false => Vec::new(),
         };
+        let prefix = Target::Lubricant.prefix();
+        let known = own.map(|_| contacts::contacts(oil, keys, prefix));
+        notes.extend(known.and_then(|known| contacts::not_measured(oil, &known)));
         notes.extend(changed_losses(transmission));
         notes.extend(scattered_maps(transmission));
         notes.extend(filled_maps(transmission));
@@ -386,8 +405,8 @@ fn written_in(document: &Document, key: &str, file: &str) -> String {
 /// Friction of the fluid that a vehicle's file names; none where it cannot be read.
 fn friction(file: &str, fluid: &str) -> Option<Friction> {
     let word = fluid_of_file(file, fluid.to_owned());
-    let (name, text, _) = text_of(&word, Kind::Lubricant, NamedBy::File).ok()?;
-    let (own, _) = read_lubricant(&name, &text).ok()?;
+    let (name, text, disk) = text_of(&word, Kind::Lubricant, NamedBy::File).ok()?;
+    let (own, _) = read_lubricant(&name, &text, &disk).ok()?;
     Some(own.friction)
 }
 
@@ -416,11 +435,16 @@ fn fluid_word(file: &str, own: String, asked: &Option<String>, argument: Argumen
 }
 
 /// The file of a fluid with its overrides, and its name or path.
-fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, String) {
+/// Also where the tables are that it names.
+fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, String, Disk) {
     let by = of.by.unwrap_or(options.named_by);
     let read = text_of(&of.word, Kind::Lubricant, by)
-        .and_then(|(file, text, _)| Document::parse(&file, &text));
-    let file = match read {
+        .and_then(|(file, text, disk)| Ok((Document::parse(&file, &text)?, disk)));
+    let mut folder = Disk::default();
+    let file = match read.map(|(document, disk)| {
+        folder = disk;
+        document
+    }) {
         Ok(mut document) => CarFile {
             problems: apply(&mut document, &options.set, |of| of == target),
             document: Some(document),
@@ -435,7 +459,7 @@ fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, St
             }),
         },
     };
-    (file, of.word.clone())
+    (file, of.word.clone(), folder)
 }
 
 /// Puts in the overrides of some files; their problems.

@@ -5,6 +5,7 @@
 pub mod assumptions;
 pub mod carried;
 pub mod catalogue;
+pub mod contacts;
 mod doubts;
 pub mod new_car;
 mod inputs;
@@ -103,7 +104,7 @@ impl Setup {
             baselines: head.baselines.clone(),
             vehicle: params.vehicle().clone(),
             keys: Vec::new(),
-            notes: frame.notes(params.vehicle()),
+            notes: frame.notes(params.vehicle(), &params.read.keys),
             origin: Origin::default(),
         }
     }
@@ -318,17 +319,22 @@ fn stem(word: &str) -> String {
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load_lubricant(word: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
-    let (file, text, _) = text_of(word, Kind::Lubricant, NamedBy::Caller)?;
-    read_lubricant(&file, &text)
+    let (file, text, disk) = text_of(word, Kind::Lubricant, NamedBy::Caller)?;
+    read_lubricant(&file, &text, &disk)
 }
 
-/// As [`load_lubricant`], for a fluid's text that need not be on disk; `file` is its name or path, which problems cite.
+/// As [`load_lubricant`], for a fluid's text that need not be on disk; `file` is its name or path, which problems cite. The tables that the text
+/// names come from `files`.
 ///
 /// # Errors
 /// As there.
-pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
+pub fn read_lubricant(
+    file: &str,
+    text: &str,
+    files: &dyn Files,
+) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
     let document = Document::parse(file, text)?;
-    let reader = Reader::new(&document);
+    let reader = Reader::new(&document).with_files(files);
     let lubricant = Lubricant::from_values(&reader.root(), &stem(file));
     Ok((lubricant, reader.finish()?))
 }

@@ -280,10 +280,9 @@ impl ParamSet {
         if let Some(document) = &mut documents[file] {
             document.reach(&by).map_err(unset)?;
         }
-        let reader = |document| Reader::new(document).with_files(&inputs.frame.files);
-        let readers = documents
-            .each_ref()
-            .map(|document| document.as_ref().map(reader));
+        let readers = inputs
+            .frame
+            .readers(&documents.each_ref().map(Option::as_ref));
         let _ = inputs.frame.assemble(&readers);
         let known = readers[file].as_ref().map(Reader::known);
         let mut known = known.into_iter().flatten();

@@ -32,6 +32,8 @@ pub struct FileColumn {
     pub required: bool,
     /// Name of the column that gives the same quantity in the program's own unit: in the rows it has that name. Empty for that column itself.
     pub is_like: &'static str,
+    /// True of a column that says something of the value, such as its scatter, and spans no axis of a grid.
+    pub is_beside: bool,
 }
 
 impl FileColumn {
@@ -44,6 +46,16 @@ impl FileColumn {
             group,
             required: true,
             is_like: "",
+            is_beside: false,
+        }
+    }
+
+    /// The column, which says something of the value.
+    #[must_use]
+    pub const fn beside(self) -> Self {
+        FileColumn {
+            is_beside: true,
+            ..self
         }
     }
 

@@ -9,20 +9,27 @@
 //! | LU-5 | film share of interface i: u_i = z_i/(1 + z_i), z_i = x_i^q, x_i = eta dv_i/N_half; 0 with the film switched off | N_half, q fitted to thesis 5.5.2, 8.9; form ASSUMED: load shared by asperities and film (Echavarri et al. 2017) |
 //! | FI-2 | film thickness h_i = h_half x_i^0.6 | form: isoviscous film; h_half ASSUMED |
 //!
+//! Friction that a bench has measured is in [`contact`] (FR-1 to FR-7), the fit to its table in [`bench`](mod@bench) (FR-5, FR-8).
+//!
 //! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed m/s of the innermost interface, or of each other one.
 //! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
 //!
 //! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9. Ichihashi in Akehurst 2.3 (0.09 to 0.135, up to 30 % with temperature) measured segment on pulley at
 //! 100 MPa, not band on segment: it is no bound of LU-4.
 
+pub mod bench;
+pub mod contact;
 mod keys;
 mod viscosity;
 
+pub use bench::Bench;
+pub use contact::{Contact, ContactCurve};
 pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
 use crate::math::{Gather, Mask, Real, both, physics};
+use std::sync::Arc;
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -57,6 +64,21 @@ pub struct Friction<R: Real = f64> {
     pub half_thickness_m: R,
     /// Dissipation of an interface that halves the shear of its film, W (FH-1).
     pub film_heating_w: R,
+    /// Friction segment on pulley in micro slip as a bench measured it (FR-1), in place of `segment`.
+    pub micro_slip: Option<ContactCurve<R>>,
+    /// Friction segment on pulley in macro slip as a bench measured it (FR-1), in place of `capacity`.
+    pub macro_slip: Option<ContactCurve<R>>,
+    /// Logarithm of the fluid's factor on the friction of teeth (FR-7).
+    pub log_gear_factor: R,
+}
+
+/// Friction of elements on pulleys at one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementFriction<R: Real = f64> {
+    /// In micro slip.
+    pub segment: R,
+    /// In macro slip, which bounds the torque.
+    pub capacity: R,
 }
 
 /// Exponent of thickness in FI-2.
@@ -98,6 +120,19 @@ pub struct FilmPowers<R: Real = f64> {
 
 #[physics]
 impl<R: Real> Friction<R> {
+    /// Friction of elements on pulleys at belt temperature, dynamic viscosity and belt speed: the fluid's numbers, or where a bench measured it
+    /// the curve's (FR-4).
+    pub fn elements(&self, belt_k: R, eta_pa_s: R, belt_m_s: R) -> ElementFriction<R> {
+        let of = |curve: &Option<ContactCurve<R>>, number: R| match curve {
+            Some(curve) => curve.at_belt_speed(belt_k, eta_pa_s, belt_m_s),
+            None => number,
+        };
+        ElementFriction {
+            segment: of(&self.micro_slip, self.segment),
+            capacity: of(&self.macro_slip, self.capacity),
+        }
+    }
+
     /// Band friction at belt temperature, dynamic viscosity and sliding speeds (LU-4, LU-5, FI-2).
     pub fn band(&self, belt_k: R, eta_pa_s: R, sliding_m_s: [R; 2]) -> BandFriction<R> {
         let films = self.film_powers(self.film_loads(eta_pa_s, sliding_m_s));
@@ -153,6 +188,16 @@ impl<R: Real> Friction<R> {
     }
 }
 
+impl Friction {
+    /// No less than the friction of elements on pulleys in micro slip anywhere.
+    #[must_use]
+    pub fn largest_segment(&self) -> f64 {
+        self.micro_slip
+            .as_ref()
+            .map_or(self.segment, ContactCurve::largest)
+    }
+}
+
 /// A checked lubricant.
 #[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Lubricant<R: Real = f64> {
@@ -168,6 +213,9 @@ pub struct Lubricant<R: Real = f64> {
     pub density15_kg_m3: R,
     /// Friction in the belt's contacts.
     pub friction: Friction<R>,
+    /// Tables of friction that were measured with it.
+    #[gather(same)]
+    pub benches: Vec<Arc<Bench>>,
 }
 
 /// Viscosity and density of an oil at one temperature.
@@ -183,6 +231,8 @@ pub struct OilState<R: Real = f64> {
     pub log_nu: R,
     /// Logarithm of the dynamic viscosity in Pa s.
     pub log_eta: R,
+    /// Logarithm of the fluid's factor on the friction of teeth (FR-7).
+    pub log_gear_factor: R,
 }
 
 #[physics]
@@ -197,6 +247,15 @@ impl<R: Real> OilState<R> {
             dynamic_pa_s,
             log_nu,
             log_eta,
+            log_gear_factor: log_nu.splat(0.0),
+        }
+    }
+
+    /// The same oil with the logarithm of its factor on the friction of teeth (FR-7).
+    pub fn with_gear_factor(self, log_gear_factor: R) -> Self {
+        OilState {
+            log_gear_factor,
+            ..self
         }
     }
 }
@@ -221,6 +280,7 @@ impl<R: Real> Lubricant<R> {
     /// Viscosity and density.
     pub fn state(&self, temp_k: R) -> OilState<R> {
         OilState::new(self.kinematic_m2_s(temp_k), self.density_kg_m3(temp_k))
+            .with_gear_factor(self.friction.log_gear_factor)
     }
 
     /// Dynamic viscosity, Pa s.

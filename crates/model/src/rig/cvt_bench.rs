@@ -112,8 +112,11 @@ struct Pass {
 
 /// The belt at a temperature, K, without torque and clamping force.
 fn turning(car: &Car, cvt: &Cvt, at: &BeltAtRatio, point: &BenchPoint, belt_k: f64) -> BeltLoad {
-    let (area_m2, speeds) = (at.prepared.film_area_m2, (point.ratio, point.input_rad_s));
-    BeltLoad::turning_on(&cvt.belt, area_m2, &car.oil, belt_k, speeds)
+    let (of_belt, speeds) = (
+        (at.prepared.film_area_m2, at.geometry.primary_radius_m),
+        (point.ratio, point.input_rad_s),
+    );
+    BeltLoad::turning_on(&cvt.belt, of_belt, &car.oil, belt_k, speeds)
 }
 
 /// Where a fixed point begins.

@@ -1,4 +1,8 @@
-//! A grid of two factors as the matrix that it is.
+//! A grid of two factors as the matrix that it is, where further factors may span what is known of a friction.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | GF-1 | ends of a cell: y - sqrt(sum min(0, d_j)2), y + sqrt(sum max(0, d_j)2), y with every place at its middle, d_j the least and the largest difference with the place of friction j alone at its ends | derived: independent spreads of two standard deviations, to first order |
 
 use serde::Serialize;
 
@@ -22,6 +26,14 @@ pub struct GridMatrix {
     pub least_of: MinimumOver,
     /// Row and column of the smallest numbers.
     pub least: Vec<[usize; 2]>,
+    /// Least and largest number of each cell over what is known of the frictions that further factors move (GF-1); empty without such factors.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ends: Vec<Vec<Option<[f64; 2]>>>,
+}
+
+/// True of a key that says where a friction is in its spread (FR-6).
+fn is_place(key: &str) -> bool {
+    key.contains("lubricant.friction.") && key.ends_with(".place")
 }
 
 /// Cells that a minimum is taken over. A condition such as the ambient temperature is not chosen, so each of its levels has a minimum
@@ -43,16 +55,26 @@ const CONDITIONS: [&str; 3] = ["ambient_degc", "start", "cycle"];
 impl GridMatrix {
     /// The matrix of a plan with two factors from the numbers of its points; none for another plan.
     pub(super) fn from_points(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
-        let [first, second] = plan.factors.as_slice() else {
+        let [first, second, places @ ..] = plan.factors.as_slice() else {
             return Ok(None);
         };
-        if plan.design != Design::Grid {
+        if plan.design != Design::Grid || !places.iter().all(|factor| is_place(&factor.key)) {
             return Ok(None);
         }
-        let numbers = numbers.all()?;
+        let places: Vec<Vec<f64>> = places
+            .iter()
+            .map(|factor| {
+                let list = factor.values.list().into_iter();
+                list.filter_map(|value| value.number()).collect()
+            })
+            .collect();
+        let all = numbers.all()?;
+        let (numbers, ends) = middles(&all, &places);
         let names = |factor: usize, unit: &str| -> Vec<String> {
-            let all = values(plan, factor, numbers.len());
-            all.map(|value| value.map_or_else(String::new, |value| label(&value, unit)))
+            let of_cell = all.len() / numbers.len().max(1);
+            let points = values(plan, factor, all.len()).step_by(of_cell.max(1));
+            points
+                .map(|value| value.map_or_else(String::new, |value| label(&value, unit)))
                 .collect()
         };
         let (rows, columns) = (names(0, &first.unit), names(1, &second.unit));
@@ -63,7 +85,11 @@ impl GridMatrix {
             (false, true) => MinimumOver::Column,
             _ => MinimumOver::All,
         };
-        let matrix = folded(factors, &rows, columns, &numbers);
+        let mut matrix = folded(factors, &rows, columns, &numbers);
+        if !places.is_empty() {
+            let width = matrix.columns.len().max(1);
+            matrix.ends = ends.chunks(width).map(<[_]>::to_vec).collect();
+        }
         Ok(Some(matrix.with_least(least_of)))
     }
 
@@ -93,6 +119,43 @@ impl GridMatrix {
     }
 }
 
+/// The number of each cell with every place in its middle, and its ends (GF-1), from the numbers of all points, the places fastest.
+fn middles(numbers: &[f64], places: &[Vec<f64>]) -> (Vec<f64>, Vec<Option<[f64; 2]>>) {
+    let of_cell: usize = places.iter().map(Vec::len).product();
+    let nearest = |levels: &Vec<f64>| {
+        let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
+        let least = levels.iter().enumerate().min_by(by_size);
+        least.map_or(0, |(k, _)| k)
+    };
+    let middle: Vec<usize> = places.iter().map(nearest).collect();
+    // Index of a point within its cell, the last place fastest.
+    let index = |at: &[usize]| {
+        let levels = at.iter().zip(places);
+        levels.fold(0, |index, (level, of)| index * of.len() + level)
+    };
+    let square = |x: f64| x * x;
+    let cell = |own: &[f64]| {
+        let y = own[index(&middle)];
+        let mut sums = [0.0; 2];
+        for (f, of) in places.iter().enumerate() {
+            let mut widest = [0.0_f64; 2];
+            for level in 0..of.len() {
+                let mut at = middle.clone();
+                at[f] = level;
+                let d = own[index(&at)] - y;
+                widest = [widest[0].min(d), widest[1].max(d)];
+                if d.is_nan() {
+                    return (y, None);
+                }
+            }
+            sums = [sums[0] + square(widest[0]), sums[1] + square(widest[1])];
+        }
+        let [below, above] = sums.map(f64::sqrt);
+        (y, y.is_finite().then_some([y - below, y + above])) // GF-1
+    };
+    numbers.chunks_exact(of_cell.max(1)).map(cell).unzip()
+}
+
 /// Levels and numbers point by point, the last factor fastest (DE-5), as a matrix.
 fn folded(
     factors: [String; 2],
@@ -115,12 +178,31 @@ fn folded(
         cells: cells.collect(),
         least_of: MinimumOver::All,
         least: Vec::new(),
+        ends: Vec::new(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// By hand: two frictions whose places move a cell by -3, +4 and by -4, +3 about 10: 10 - 5 and 10 + 5. What moves nothing is no range.
+    #[test]
+    fn frictions_widen_a_cell_by_the_root_of_their_squares() {
+        let places = vec![vec![-1.0, 0.0, 1.0], vec![-1.0, 0.0, 1.0]];
+        let at = |a: f64, b: f64| 10.0 + a + b;
+        let moved = |down: f64, up: f64| [down, 0.0, up];
+        let (a, b) = (moved(-3.0, 4.0), moved(-4.0, 3.0));
+        let mut numbers: Vec<f64> = Vec::new();
+        for a in a {
+            numbers.extend(b.iter().map(|b| at(a, *b)));
+        }
+        numbers.extend([7.0; 9]);
+        let (cells, ends) = middles(&numbers, &places);
+        assert_eq!(cells, [10.0, 7.0]);
+        assert_eq!(ends, [Some([5.0, 15.0]), Some([7.0, 7.0])]);
+        assert_eq!(middles(&[1.0, 2.0], &[]).0, [1.0, 2.0]);
+    }
 
     #[test]
     fn the_last_factor_runs_along_the_rows() {

@@ -196,6 +196,13 @@ fn matrix_rows(answer: &Answer) -> Vec<MatrixRow<'_>> {
     rows
 }
 
+/// An end of a cell over what is known of the frictions; none where nothing spans it.
+fn end_of(row: &MatrixRow<'_>, end: usize) -> Option<f64> {
+    let (_, matrix, i, k) = row;
+    let ends = (*matrix.ends.get(*i)?.get(*k)?)?;
+    Some(ends[end])
+}
+
 fn matrix<'a>() -> Vec<Column<MatrixRow<'a>>> {
     let mut list = of_output_in_unit(|r: &MatrixRow<'a>| r.0);
     list.extend(columns! { MatrixRow<'a>;
@@ -204,6 +211,8 @@ fn matrix<'a>() -> Vec<Column<MatrixRow<'a>>> {
         text "column_factor", "", "", r => r.1.factors[1].clone();
         text "column", "", "", r => r.1.columns[r.3].clone();
         optional "value", "", "", r => r.1.cells.get(r.2).and_then(|row| *row.get(r.3)?);
+        optional "low", "", "", r => end_of(r, 0);
+        optional "high", "", "", r => end_of(r, 1);
     });
     list
 }

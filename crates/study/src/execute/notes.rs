@@ -2,6 +2,7 @@
 
 use super::cars::{Binding, StudyCar, words};
 use crate::plan::{Factor, Plan};
+use cvtcycle_config::setup::contacts::NOT_MEASURED;
 use cvtcycle_config::setup::is_twin;
 
 /// Names of factors that a sentence lists.
@@ -44,7 +45,8 @@ pub(super) fn not_drawn(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     cars.iter().flat_map(of_car).collect()
 }
 
-/// Lists notes that hold for a car with every word of a factor but not without it: oils without a friction of their own.
+/// Lists notes that hold for a car with every word of a factor but not without it: oils without a friction of their own. What is not measured with an
+/// oil is said for those oils.
 pub(super) fn notes(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     let mut list: Vec<String> = Vec::new();
     for car in cars {
@@ -62,9 +64,31 @@ pub(super) fn notes(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
                 !of(0).contains(note) && all.clone().all(|notes| notes.contains(note))
             };
             let said = of(*stride).iter().filter(by_each);
+            let said = said.filter(|note| !note.starts_with(NOT_MEASURED));
             let said = said.map(|note| format!("{}: {note}", factor.name));
+            let fluids = (1..).zip(words(factor));
+            let fluids = fluids.filter_map(|(k, word)| {
+                let mut notes = of(k * stride).iter();
+                let note = notes.find(|note| note.starts_with(NOT_MEASURED))?;
+                Some((word.to_string(), note.as_str()))
+            });
+            let said = said.chain(by_note(&factor.name, fluids));
             list.extend(said.filter(|note| !list.contains(note)).collect::<Vec<_>>());
         }
     }
     list
+}
+
+/// Each note once, after the words for which it holds.
+fn by_note<'n>(factor: &str, notes: impl Iterator<Item = (String, &'n str)>) -> Vec<String> {
+    let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+    for (word, note) in notes {
+        match groups.iter_mut().find(|(own, _)| *own == note) {
+            Some((_, of)) => of.push(word),
+            None => groups.push((note, vec![word])),
+        }
+    }
+    let groups = groups.into_iter();
+    let said = groups.map(|(note, of)| format!("{factor} {}: {note}", of.join(", ")));
+    said.collect()
 }

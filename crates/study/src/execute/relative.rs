@@ -1,11 +1,12 @@
-//! A plan made for its own cars, taken relative to their values, so that it serves any car.
+//! A plan made for its own cars, taken relative to their values, so that it serves any car. A friction of which the car's fluid has a table has the range
+//! of that table.
 
 use super::prepare::{folder_of, in_folder};
 use crate::plan::{
     Acts, Cars, Distribution, Factor, FactorValue, FactorValues, Plan, RUN_OPTIONS, unit,
 };
 use cvtcycle_config::setup::{NamedBy, Options, ParamSet, Setup, TWIN, baseline_of};
-use cvtcycle_config::{Problems, unit_of};
+use cvtcycle_config::{Problems, Target, unit_of};
 
 /// Share of the largest value of a factor below which the value of its car is too near to zero to be a measure of it.
 const NEAR_ZERO: f64 = 0.1;
@@ -49,8 +50,9 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         let is_option = RUN_OPTIONS.contains(&factor.key.as_str());
         factor.acts == Acts::Value && factor.values.are_numbers() && !is_option
     };
+    let measured = |factor: &Factor| of_table(factor, owner(factor)?);
     let factors = plan.factors.iter().map(|factor| match is_value(factor) {
-        true => over(factor).unwrap_or_else(|| factor.clone()),
+        true => (measured(factor).or_else(|| over(factor))).unwrap_or_else(|| factor.clone()),
         false => factor.clone(),
     });
     let factors = factors.collect();
@@ -61,6 +63,28 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         ..plan
     };
     Ok((relative, subject.vehicle().transmission().is_cvt()))
+}
+
+/// Standard deviations at which the range of a table's friction is cut off.
+const CUT: f64 = 3.0;
+
+/// The range of a friction of which the car's fluid has a table: what is known by the table (FR-8), in place of the plan's.
+fn of_table(factor: &Factor, car: &ParamSet) -> Option<Factor> {
+    let own = factor.key.strip_prefix(Target::Lubricant.prefix())?;
+    let mut benches = car.vehicle().oils().0.benches.iter();
+    let bench = benches.find(|bench| bench.contact.number_key() == Some(own))?;
+    let sd = (0.5 * bench.spread).min(0.3);
+    (sd > 0.0).then(|| Factor {
+        acts: Acts::Scale,
+        unit: unit(&factor.key, Acts::Scale),
+        values: FactorValues::Distribution(Distribution::TruncatedNormal {
+            mean: 1.0,
+            sd,
+            low: 1.0 - CUT * sd,
+            high: 1.0 + CUT * sd,
+        }),
+        ..factor.clone()
+    })
 }
 
 /// A factor over the value of its car.

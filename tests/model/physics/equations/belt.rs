@@ -168,9 +168,10 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     } else {
         z / (1.0 + s * c)
     }; // TE-5
-    let loaded = |clamp: f64| (cx.abs() * b.cos_wedge / (2.0 * mu * clamp)).min(1.0);
-    let added_n = bp * cx / (4.0 * b.tan_wedge);
-    let loading_n = if cx >= 0.0 { fp + added_n / 2.0 } else { fs };
+    let net_n = l.output_torque_nm / rs;
+    let loaded = |clamp: f64| (net_n.abs() * b.cos_wedge / (2.0 * mu * clamp)).min(1.0);
+    let added_n = bp * net_n / (4.0 * b.tan_wedge);
+    let loading_n = if net_n >= 0.0 { fp + added_n / 2.0 } else { fs };
     let hold = if smooth {
         (fp + added_n * (1.0 - loaded(loading_n))).max(0.0) // TE-9
     } else {

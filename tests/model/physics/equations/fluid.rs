@@ -16,6 +16,9 @@ fn friction() -> Friction {
         film_exponent: 1.4,
         half_thickness_m: 8e-7,
         film_heating_w: 4000.0,
+        micro_slip: None,
+        macro_slip: None,
+        log_gear_factor: 0.0,
     }
 }
 

@@ -112,8 +112,8 @@ impl<R: Real> Clamping<'_, R> {
         let whole_n = whole_wrap_n(&cvt.belt, compression_n, load.segment_friction);
         let added_n = added_n(&cvt.belt, at, compression_n);
         // F_p = x + added (1 - whole/(x + added/2)) for x = tau F_s, or x where the whole wrap is taken up.
-        let less_n = primary_n - 0.5 * added_n;
-        let root_n = (less_n * less_n + 4.0 * added_n * whole_n).max(0.0).sqrt();
+        let less_n = primary_n - added_n * 0.5;
+        let root_n = (less_n * less_n + added_n * whole_n * 4.0).max(0.0).sqrt();
         let driving_n = (0.5 * (less_n - added_n + root_n)).min(primary_n);
         // In overrun F_p = tau F_s + added (1 - whole/F_s): the larger root, or tau F_s where the whole wrap is taken up.
         let sum_n = primary_n - added_n;

@@ -253,7 +253,7 @@ fn check_cap<V: Values>(s: &V, table: Option<&PressureTable>, cap_pa: f64) {
 /// A segment leaves the wedge by itself: at an angle of friction above that of the wedge it would hold itself there, and the balance of forces
 /// between sheave and belt (GE, VA-2) would no longer be theirs. The printed forms run as printed.
 fn check_wedge<V: Values>(v: &V, belt: &Belt, oil: &Lubricant) {
-    let mu = oil.friction.segment;
+    let mu = oil.friction.largest_segment();
     if belt.formulation.by_statics() && belt.tan_wedge <= mu {
         v.complain(
             "half_wedge_deg",

@@ -155,9 +155,13 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             .cvt
             .belt
             .sliding_m_s(line.at.geometry.ratio, primary_rad_s);
-        let band = oil.friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
+        let eta_pa_s = oil.dynamic_pa_s(belt_k);
+        let band = oil.friction.band(belt_k, eta_pa_s, sliding);
+        let belt_m_s = line.at.geometry.belt_m_s(primary_rad_s);
+        let elements = oil.friction.elements(belt_k, eta_pa_s, belt_m_s);
         let film_area_m2 = line.at.prepared.film_area_m2;
-        let slipping = BeltLoad::unloaded(&oil.friction, band, film_area_m2, sliding);
+        let slipping =
+            BeltLoad::unloaded(&oil.friction, band, film_area_m2, sliding).with_elements(elements);
         BeltLoad::select(together, &self.load, &slipping)
     }
 }

@@ -234,7 +234,8 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
         true => [oil.viscosity.kinematic_m2_s(sump_k), sump_k.splat(0.0)],
         false => oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]),
     };
-    let sump = OilState::new(nu_sump, oil.density_kg_m3(sump_k));
+    let sump = OilState::new(nu_sump, oil.density_kg_m3(sump_k))
+        .with_gear_factor(friction.log_gear_factor);
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let inlet = cvt.pump.with_factor(sump.dynamic_pa_s, sump_k.splat(1.0));
     let route = Route {
@@ -298,7 +299,12 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
             friction.band_on_film(belt_k, films),
             at.prepared.film_area_m2,
             sliding,
-        ),
+        )
+        .with_elements(friction.elements(
+            belt_k,
+            eta_belt,
+            at.geometry.belt_m_s(shift.ratio * secondary_rad_s),
+        )),
         shift_flow_m3_s: shift.flow_m3_s,
         clamp_first: !matches!(before.2, Some(hold) if !hold.paced), // PU-7
         shift_held: shift.held,

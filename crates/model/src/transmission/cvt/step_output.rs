@@ -197,7 +197,12 @@ fn idle_primary_pa<P, R: Real>(step: &Step<P, R>, load: &BeltLoad<R>, pa: R) -> 
         ..*load
     };
     let tension = Tension::driving(&cvt.belt, step.line.at, &clamped);
-    cvt.primary_pa(tension.holding_n(&cvt.belt, step.line.at, load.segment_friction))
+    cvt.primary_pa(tension.holding_n(
+        &cvt.belt,
+        step.line.at,
+        load.output_torque_nm,
+        load.segment_friction,
+    ))
 }
 
 /// True for a residual within tolerance, false for NaN.

@@ -120,15 +120,20 @@ impl<R: Real> Mesh<R> {
     /// (GM-2).
     #[inline]
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
-        Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
+        Mesh::frictions(
+            [self],
+            first_rad_s,
+            torque_nm,
+            [log_eta, log_eta.splat(0.0)],
+        )[0]
     }
 
-    /// The same of several meshes of a train.
+    /// The same of several meshes of a train, with the logarithm of the fluid's factor, too (FR-7).
     fn frictions<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,
         torque_nm: R,
-        log_eta: R,
+        [log_eta, log_oil]: [R; 2],
     ) -> [R; COUNT] {
         let mut logs = [torque_nm; COUNT];
         for (mesh, log) in meshes.iter().zip(&mut logs) {
@@ -138,7 +143,7 @@ impl<R: Real> Mesh<R> {
         }
         logs = R::ln_array(logs);
         for log in &mut logs {
-            *log = 0.2 * *log - 0.05 * log_eta;
+            *log = 0.2 * *log - 0.05 * log_eta + log_oil; // FR-7
         }
         let mut frictions = R::exp_array(logs);
         for (mesh, friction) in meshes.iter().zip(&mut frictions) {
@@ -147,14 +152,15 @@ impl<R: Real> Mesh<R> {
         frictions
     }
 
-    /// Lost shares of the power through several meshes of a train (GM-3).
+    /// Lost shares of the power through several meshes of a train, with the logarithms of the oil's viscosity in mPa s and of its factor (GM-3,
+    /// FR-7).
     pub fn shares<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,
         torque_nm: R,
-        log_eta: R,
+        logs: [R; 2],
     ) -> [R; COUNT] {
-        let mut shares = Mesh::frictions(meshes, first_rad_s, torque_nm, log_eta);
+        let mut shares = Mesh::frictions(meshes, first_rad_s, torque_nm, logs);
         for (mesh, share) in meshes.iter().zip(&mut shares) {
             *share = *share * mesh.loss_factor; // GM-3
         }
@@ -164,6 +170,11 @@ impl<R: Real> Mesh<R> {
     /// Lost share of the power through the mesh (GM-3).
     #[inline]
     pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
-        Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
+        Mesh::shares(
+            [self],
+            first_rad_s,
+            torque_nm,
+            [log_eta, log_eta.splat(0.0)],
+        )[0]
     }
 }

@@ -155,7 +155,7 @@ impl<R: Real> GearTrain<R> {
             self.meshes.each_ref(),
             first_rad_s,
             demand_nm,
-            oil.log_eta + LN_MILLI,
+            [oil.log_eta + LN_MILLI, oil.log_gear_factor],
         );
         let mesh_share = first + second;
         let share = mesh_share + self.bearing_share;

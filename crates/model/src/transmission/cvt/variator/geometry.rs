@@ -70,6 +70,11 @@ impl<R: Real> Geometry<R> {
         }
     }
 
+    /// Speed of the belt at a speed of the primary, m/s.
+    pub fn belt_m_s(&self, primary_rad_s: R) -> R {
+        self.primary_radius_m * primary_rad_s.abs()
+    }
+
     /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
     pub fn secondary_radius_slope_m(&self) -> R {
         // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.

@@ -1,7 +1,7 @@
 //! Load of the belt: speed, torque, clamping force and the friction of its lubricant.
 
 use super::{Belt, Geometry, bands};
-use crate::lubricant::{BandFriction, Friction, Lubricant};
+use crate::lubricant::{BandFriction, ElementFriction, Friction, Lubricant};
 use crate::math::{Mask, Real, physics};
 
 /// Load of the belt at one operating point.
@@ -50,6 +50,15 @@ impl<R: Real> BeltLoad<R> {
 
 #[physics]
 impl<R: Real> BeltLoad<R> {
+    /// The same with the friction of elements on pulleys at its state.
+    pub fn with_elements(self, elements: ElementFriction<R>) -> Self {
+        BeltLoad {
+            segment_friction: elements.segment,
+            capacity_friction: elements.capacity,
+            ..self
+        }
+    }
+
     /// `yes` where the mask says so, else `no`: loads of the same fluid.
     pub(in crate::transmission::cvt) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         let of = |yes: R, no: R| mask.select(yes, no);
@@ -64,6 +73,8 @@ impl<R: Real> BeltLoad<R> {
                 shear_pa: pair(yes.band.shear_pa, no.band.shear_pa),
             },
             film_n: pair(yes.film_n, no.film_n),
+            segment_friction: of(yes.segment_friction, no.segment_friction),
+            capacity_friction: of(yes.capacity_friction, no.capacity_friction),
             ..*yes
         }
     }
@@ -80,23 +91,26 @@ impl BeltLoad {
     ) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let film_area_m2 = bands::film_area_m2(belt, &geometry);
-        BeltLoad::turning_on(belt, film_area_m2, oil, belt_k, (ratio, primary_rad_s))
+        let at = (film_area_m2, geometry.primary_radius_m);
+        BeltLoad::turning_on(belt, at, oil, belt_k, (ratio, primary_rad_s))
     }
 
-    /// The same with the area of its films known, m2, at a ratio and primary speed.
+    /// The same with the area of its films, m2, and the radius of the primary, m, known, at a ratio and primary speed.
     pub(crate) fn turning_on(
         belt: &Belt,
-        film_area_m2: f64,
+        (film_area_m2, primary_radius_m): (f64, f64),
         oil: &Lubricant,
         belt_k: f64,
         (ratio, primary_rad_s): (f64, f64),
     ) -> Self {
         let friction = &oil.friction;
         let sliding = belt.sliding_m_s(ratio, primary_rad_s);
-        let band = friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
+        let eta_pa_s = oil.dynamic_pa_s(belt_k);
+        let band = friction.band(belt_k, eta_pa_s, sliding);
+        let elements = friction.elements(belt_k, eta_pa_s, primary_radius_m * primary_rad_s.abs());
         BeltLoad {
             primary_speed_rad_s: primary_rad_s,
-            ..BeltLoad::unloaded(friction, band, film_area_m2, sliding)
+            ..BeltLoad::unloaded(friction, band, film_area_m2, sliding).with_elements(elements)
         }
     }
 }

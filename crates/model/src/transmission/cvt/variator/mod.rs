@@ -243,7 +243,7 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
     let film_nm = bands::film_loss_nm(at, load);
     let slip = slip::slip(belt, at, &tension, mu_segment);
-    let holding_n = tension.holding_n(belt, at, mu_segment);
+    let holding_n = tension.holding_n(belt, at, load.output_torque_nm, mu_segment);
     Parts {
         holding_n,
         slip: if belt.formulation.by_statics() {

@@ -9,7 +9,7 @@
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
 //! | TE-7 | one force on both pulleys: dT = -s (mu_1 beta Tm + F_v), mu_1 = k mu_b (1 - u_1), k that of a coating of the shoulders (BT-8), beta the smaller wrap, F_v the film's force (FI-1), Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_1 beta A + F_v and c = mu_1 beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
 //! | TE-8 | `smooth`: m is that of the segments, and the mean tension of the bands is Q/beta + m_b v2, m_b theirs | derived: free body of a segment, 2 F tan th + m_s beta v2 + \|C_x\| beta/2 = Q, and of a band element, T = Q/beta + m_b v2; the thesis and the printed forms have the whole belt press |
-//! | TE-9 | force of the primary that holds the ratio: C_x >= 0: F_h = F_s beta_p/beta_s + beta_p C_x (1 - a_p)/(4 tan th); C_x < 0: the same with a_s; a_i = \|C_x\| cos th/(2 mu_seg F_i), at most 1, the share of its wrap over which the loading pulley loads the segments; F_p in a_p is F_s beta_p/beta_s + beta_p C_x/(8 tan th) | derived: free body of a segment with the tension over its wrap, F_i 2 tan th/beta_i = T - m v2 - mean compression; that is a_i C_x/2 on the loading pulley (its idle arc has none) and C_x/2 on the other one, as SL-4 and SL-6 have them |
+//! | TE-9 | force of the primary that holds the ratio: C_x >= 0: F_h = F_s beta_p/beta_s + beta_p C_x (1 - a_p)/(4 tan th); C_x < 0: the same with a_s; a_i = \|C_x\| cos th/(2 mu_seg F_i), at most 1, the share of its wrap over which the loading pulley loads the segments; F_p in a_p is F_s beta_p/beta_s + beta_p C_x/(8 tan th); C_x here is T/R_s | derived: free body of a segment with the tension over its wrap, F_i 2 tan th/beta_i = T - m v2 - mean compression; that is a_i C_x/2 on the loading pulley (its idle arc has none) and C_x/2 on the other one, as SL-4 and SL-6 have them |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
 //! Symbols: F clamping force N, th half wedge angle, m belt mass per length kg/m, v belt speed m/s, mu_b band friction.
@@ -20,7 +20,8 @@
 //! 0.41, and 0.70, 1 and 1.43 without torque. Measured ratios of other belts are about 1.1, 1.3 and 1.75 (from memory; torque not known). The force in
 //! a_p is the middle of what it can be: within 2 % of the F_p that solves TE-9 with its own, and defined where no force does. Pressures, capacity and the
 //! clamp laws have F_h. Slip, wedging and penetration keep TE-1, with which their constants were found (thesis 8.6): with F_h in SL-4 the slip of the
-//! variator rig in low (3 % at 139 Nm and 15 bar) takes a friction of 0.10 in place of 0.125.
+//! variator rig in low (3 % at 139 Nm and 15 bar) takes a friction of 0.10 in place of 0.125. The step of tension, which adds to C_x or takes from it, is left
+//! out of TE-9: without torque the force is that of TE-1.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
 use crate::math::{Mask, Real, physics};
@@ -197,13 +198,15 @@ impl<R: Real> Tension<R> {
         }
     }
 
-    /// Force of the primary that holds the ratio, N (TE-9); in the printed forms, and by a table of thrust ratios, its clamping force.
-    pub fn holding_n(&self, belt: &Belt<R>, at: &BeltAtRatio<R>, mu_segment: R) -> R {
+    /// Force of the primary that holds the ratio under an output torque, Nm (TE-9), N; in the printed forms, and by a table of thrust ratios, its
+    /// clamping force.
+    pub fn holding_n(&self, belt: &Belt<R>, at: &BeltAtRatio<R>, output_nm: R, mu_segment: R) -> R {
         if !belt.formulation.by_statics() || belt.thrust_ratio.is_some() {
             return self.primary_clamp_n;
         }
         let clamps = (self.secondary_clamp_n, self.primary_clamp_n);
-        holding_n(belt, at, clamps, self.compression_n, mu_segment)
+        let compression_n = output_nm * at.prepared.inv_secondary_radius;
+        holding_n(belt, at, clamps, compression_n, mu_segment)
     }
 
     /// Mean band tension (T1 + T2)/2, N (thesis eq. 39).
