@@ -1,6 +1,7 @@
 //! The summary of a run with all that is said of it: maps that were left, prices of the losses, published numbers.
 
 use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::start_of_log;
 use cvtcycle_model::drive::{Conditions, Row, drive};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{
@@ -78,6 +79,10 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
         run.price = Some(attribute(&priced, run));
     }
     words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
+    if let Some((own, recorded)) = summary.recording.as_mut().zip(cycle.recording.as_deref()) {
+        let start = start_of_log(recorded).map(|start| StartWord::of_nodes(&start));
+        own.starts = start.is_some_and(|start| start == of.start);
+    }
     bounds(&mut summary, of, driven);
     compare_log(&mut summary, of, driven);
     summary
@@ -155,8 +160,8 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
 /// noise, and smoothed (tests/cli/commands/log.rs repeats it).
 const LEFT: [f64; 2] = [1.0, 0.5];
 
-/// How far rate, resolution and smoothing of a recording leave the results open (LO-6): the cars drive it with a quarter and four times the density of
-/// LO-3 too.
+/// How far rate, resolution and smoothing of a recording leave the results open (LG-6): the cars drive it with a quarter and four times the density of
+/// LG-3 too.
 fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let recorded = of.cycle.recording.as_deref();
     let Some((own, recorded)) = summary.recording.as_mut().zip(recorded) else {

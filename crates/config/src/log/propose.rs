@@ -17,9 +17,10 @@ fn entry(text: &str) -> String {
     }
 }
 
-/// `time=NAME:UNIT,speed=NAME:UNIT`, with other channels and the rows that are meant.
+/// `time=NAME:UNIT,speed=NAME:UNIT`, with the other channels that are known and the rows that are meant.
 pub(super) fn columns(
     sheet: &Sheet<'_>,
+    chosen: &Chosen,
     (time, speed): (&Source, &Source),
     more: &[(Quantity, usize, &str)],
     filters: &[(String, String)],
@@ -53,24 +54,53 @@ pub(super) fn columns(
         })
     };
     if sheet.names.is_empty() {
-        return in_order(sheet, time, speed);
+        return in_order(time, speed);
     }
-    let more = more.iter().map(|(quantity, column, unit)| {
-        entry(&format!("{}={}:{unit}", quantity.name(), name(*column)))
-    });
+    let mut named: Vec<Quantity> = vec![Quantity::Time, Quantity::Speed];
+    let mut others = Vec::new();
+    let plain = chosen.no_unit.iter();
+    let plain =
+        plain.filter_map(|(quantity, column)| Some((*quantity, *column, usual(*quantity)?)));
+    for (quantity, column, unit) in more.iter().copied().chain(plain) {
+        if !named.contains(&quantity) {
+            named.push(quantity);
+            others.push(entry(&format!(
+                "{}={}:{unit}",
+                quantity.name(),
+                name(column)
+            )));
+        }
+    }
+    for source in &chosen.others {
+        if !named.contains(&source.quantity) {
+            named.push(source.quantity);
+            others.push(of(source));
+        }
+    }
     let filters = filters
         .iter()
         .map(|(name, value)| entry(&format!("where={name}:{value}")));
     let list: Vec<String> = [of(time), of(speed)]
         .into_iter()
-        .chain(more)
+        .chain(others)
         .chain(filters)
         .collect();
     list.join(",")
 }
 
+/// Unit in which nearly all logs have a quantity; none where there are several.
+fn usual(quantity: Quantity) -> Option<&'static str> {
+    match quantity {
+        Quantity::EngineSpeed => Some("rpm"),
+        Quantity::Coolant | Quantity::EngineOil | Quantity::Sump | Quantity::Ambient => {
+            Some("degC")
+        }
+        _ => None,
+    }
+}
+
 /// The columns of a file without names.
-fn in_order(_: &Sheet<'_>, time: &Source, speed: &Source) -> String {
+fn in_order(time: &Source, speed: &Source) -> String {
     let unit = |source: &Source| match source.reading {
         Reading::Number(unit) => unit.name,
         _ => "s",
@@ -197,11 +227,16 @@ pub(super) fn guess(
         .first()
         .map(|source| source.column)
         .or_else(|| named(Quantity::Speed));
-    let time = match (chosen.times.first(), named(Quantity::Time)) {
+    // A port counts many times: of those that are named the one that rises is meant.
+    let all = || (0..sheet.width).filter(|column| Some(*column) != speed_column && rises(column));
+    let is_named = |column: &usize| chosen.no_unit.contains(&(Quantity::Time, *column));
+    let named_time = all().find(is_named);
+    let named_time =
+        named_time.or_else(|| named(Quantity::Time).filter(|_| all().next().is_none()));
+    let time = match (chosen.times.first(), named_time) {
         (Some(time), _) => time.clone(),
         (None, named) => {
-            let rising =
-                || (0..sheet.width).find(|column| Some(*column) != speed_column && rises(column));
+            let rising = || all().next();
             let stamped = || (0..sheet.width).find(|column| stamps(column).is_some());
             let column = named.or_else(stamped).or_else(rising)?;
             let reading = match stamps(&column).filter(|_| !is_number(&column)) {
@@ -258,6 +293,6 @@ pub(super) fn guess(
             }
         }
     };
-    let columns = columns(sheet, (&time, &speed), &[], filters);
+    let columns = columns(sheet, chosen, (&time, &speed), &[], filters);
     Some(Guess { columns, hint })
 }

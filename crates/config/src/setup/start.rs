@@ -4,7 +4,11 @@ use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
 
 use super::START;
-use crate::{Problem, did_you_mean};
+use crate::{Bound, Problem, did_you_mean};
+use cvtcycle_model::cycle::Recording;
+
+/// Temperatures of a log's first rows that are taken: -40 degC is what a port gives for none.
+const LOGGED: Bound = Bound::closed(-39.0, 129.0);
 
 /// Parses temperatures of nodes in degC, `NODE=DEGC` with commas between (TH-10).
 ///
@@ -28,6 +32,16 @@ pub fn start_of_nodes(list: &[(String, f64)]) -> Result<StartTemperatures, Probl
     let text: Vec<String> = list.iter().map(|(name, x)| format!("{name}={x}")).collect();
     let parts = list.iter().map(|(name, degc)| (name.as_str(), Ok(*degc)));
     nodes(&text.join(","), parts)
+}
+
+/// The temperatures with which a log begins, of the nodes that it has channels of; none without any. A value out of the range of a start is that of a missing
+/// sensor, and is passed over.
+#[must_use]
+pub fn start_of_log(recording: &Recording) -> Option<StartTemperatures> {
+    let of = |name: &str| recording.first(name).filter(|degc| LOGGED.contains(*degc));
+    let given_k = START_NODES.map(|name| of(name).map(|degc| degc + ZERO_DEGC_K));
+    let is_any = given_k.iter().any(Option::is_some);
+    is_any.then_some(StartTemperatures { given_k })
 }
 
 fn nodes<'a>(

@@ -1,0 +1,197 @@
+//! Fuel cut in overrun.
+//!
+//! | label | statement | known from |
+//! |---|---|---|
+//! | CL-5 | overrun: a second, and the one before, in which the wheels give more than 3 % of the rated power (without a car: the car loses more than 0.7 m/s2), engine above 1.1 warm idle, road speed above 5 km/h; cut where the flow is below a tenth of that at idle | ASSUMED: more than an engine drags (1.0 to 1.5 bar), so that it needs no fuel |
+//! | CL-6 | fuel comes back between the engine speeds of the last second of a cut and the next one with fuel while the wheels give power: with a tenth of the flow at idle (cut ends), with 70 % of it (fuel is back) | derived: a threshold lies between them |
+//! | CL-7 | coolant from which fuel is cut: middle of the coldest 5 % of cut seconds and the warmest overrun without a cut below them, engine above CL-6 | derived |
+
+use super::idle::{FEWEST, seconds};
+use super::resample::{between, estimate, quantile};
+use super::seconds::Second;
+use super::{Found, Value};
+
+/// Share of the flow at idle below which fuel is cut (CL-5).
+const CUT_SHARE: f64 = 0.1;
+/// Share of it from which all of it is back.
+const BACK_SHARE: f64 = 0.7;
+/// Fewest events of a threshold.
+const FEWEST_EVENTS: usize = 4;
+/// Width of the band in which fuel comes back where both ends are one, rpm.
+const LEAST_BAND_RPM: f64 = 20.0;
+
+/// True in overrun (CL-5).
+fn overruns(own: &Second, idle_rpm: f64) -> bool {
+    let pulled = match own.share {
+        Some(share) => share < -3.0,
+        None => own.accel() < -0.7,
+    };
+    pulled && own.kmh() > 5.0 && own.rpm.is_some_and(|rpm| rpm > 1.1 * idle_rpm) // CL-5
+}
+
+pub fn find(found: &mut Found) {
+    let has_fuel = found.seconds.iter().any(|own| own.fuel_g_s.is_some());
+    let (Some(idle_rpm), true) = (found.value("idle, warm"), has_fuel) else {
+        return;
+    };
+    let Some(idle_g_s) = found.value("flow at warm idle").filter(|flow| *flow > 0.0) else {
+        found.cannot("fuel cut: there is no flow of a warm car at rest to compare with");
+        return;
+    };
+    let pairs: Vec<[Second; 2]> = found
+        .seconds
+        .windows(2)
+        .filter(|pair| pair[1].follows(&pair[0]))
+        .map(|pair| [pair[0], pair[1]])
+        .collect();
+    let is_cut = |own: &Second| own.fuel_g_s.map(|flow| flow < CUT_SHARE * idle_g_s);
+    let in_overrun: Vec<&Second> = pairs
+        .iter()
+        .filter(|pair| pair.iter().all(|own| overruns(own, idle_rpm)))
+        .map(|pair| &pair[1])
+        .collect();
+    let flags: Vec<(usize, f64)> = in_overrun
+        .iter()
+        .filter(|own| own.is_warm())
+        .filter_map(|own| Some((own.block, if is_cut(own)? { 100.0 } else { 0.0 })))
+        .collect();
+    if flags.len() < FEWEST {
+        found.cannot(format!(
+            "fuel cut: {} of warm overrun",
+            seconds(flags.len())
+        ));
+        return;
+    }
+    let mean = |list: &mut Vec<f64>| Some(list.iter().sum::<f64>() / list.len() as f64);
+    let Some(share) = estimate(&flags, mean) else {
+        return;
+    };
+    let value = |name, label, key, unit, own: super::resample::Estimate, counted| Value {
+        name,
+        key,
+        label,
+        unit,
+        value: own.value,
+        range: own.range,
+        count: own.count,
+        counted,
+        before: None,
+    };
+    found.add(value(
+        "fuel cut in overrun",
+        "CL-5",
+        None,
+        "% of time",
+        share,
+        "s",
+    ));
+    if share.value < 1.0 {
+        found.findings.doubts.push(
+            "fuel is never cut in overrun: is the channel of the fuel a flow of that second, or one that is made of air and load?".to_owned(),
+        );
+        return;
+    }
+    let events = |level: f64| -> Vec<[f64; 2]> {
+        let mut list = Vec::new();
+        let mut cut: Option<Second> = None;
+        for pair in &pairs {
+            let [before, own] = pair;
+            if is_cut(before) == Some(true) && before.is_warm() {
+                cut = Some(*before);
+            }
+            let flow = own.fuel_g_s.unwrap_or(0.0);
+            // Power again is another reason for fuel.
+            let still = own.accel() < 0.0 && own.share.is_none_or(|share| share < 0.0);
+            if !still {
+                cut = None;
+            }
+            if let Some((high, low)) = cut.and_then(|cut| cut.rpm).zip(own.rpm)
+                && flow >= level * idle_g_s
+                && is_cut(own) == Some(false)
+            {
+                list.push([low, high]); // CL-6
+                cut = None;
+            }
+        }
+        list
+    };
+    let ends = events(CUT_SHARE);
+    let Some(end) = between(&ends).filter(|own| own.count >= FEWEST_EVENTS) else {
+        found.cannot(format!(
+            "engine speed at which fuel comes back: {} of a cut in overrun, {FEWEST_EVENTS} are needed",
+            match ends.len() {
+                1 => "1 end".to_owned(),
+                n => format!("{n} ends"),
+            }
+        ));
+        return;
+    };
+    let back = between(&events(BACK_SHARE)).filter(|own| own.count >= FEWEST_EVENTS);
+    found.add(value(
+        "fuel cut ends",
+        "CL-6",
+        Some("engine.fuel.cut_above_rpm"),
+        "rpm",
+        end,
+        "ends",
+    ));
+    let mut own = back.unwrap_or(end);
+    own.value = own.value.min(end.value - LEAST_BAND_RPM);
+    found.add(value(
+        "fuel is back",
+        "CL-6",
+        Some("engine.fuel.fuel_back_rpm"),
+        "rpm",
+        own,
+        "ends",
+    ));
+    from_coolant(found, &in_overrun, end.value, &is_cut);
+}
+
+/// Coolant from which fuel is cut (CL-7).
+fn from_coolant(
+    found: &mut Found,
+    in_overrun: &[&Second],
+    cut_rpm: f64,
+    is_cut: &dyn Fn(&Second) -> Option<bool>,
+) {
+    let fast = in_overrun
+        .iter()
+        .filter(|own| own.rpm.is_some_and(|rpm| rpm > cut_rpm));
+    let of = |wanted: bool| {
+        let own = fast.clone().filter(move |own| is_cut(own) == Some(wanted));
+        own.filter_map(|own| own.coolant_degc).collect::<Vec<f64>>()
+    };
+    let (mut cut, uncut) = (of(true), of(false));
+    if cut.len() + uncut.len() == 0 {
+        return;
+    }
+    let coldest = quantile(&mut cut, 0.05);
+    let end = coldest.unwrap_or(f64::INFINITY);
+    let colder = uncut.iter().copied().filter(|degc| *degc < end);
+    let warmest = colder.max_by(f64::total_cmp);
+    match coldest.zip(warmest) {
+        Some((coldest, warmest)) => found.add(Value {
+            name: "fuel cut from",
+            key: Some("engine.fuel.cut_from_degc"),
+            label: "CL-7",
+            unit: "degC",
+            value: 0.5 * (coldest + warmest),
+            range: Some([warmest, coldest]),
+            count: cut.len() + uncut.len(),
+            counted: "s",
+            before: None,
+        }),
+        None => {
+            let coldest = coldest.map_or_else(String::new, |degc| {
+                format!(
+                    "; it is cut from {} degC on, the coldest of the log",
+                    degc.round()
+                )
+            });
+            found.cannot(format!(
+                "coolant from which fuel is cut: there is no overrun of a colder car without a cut{coldest}"
+            ));
+        }
+    }
+}
