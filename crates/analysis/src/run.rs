@@ -102,6 +102,49 @@ const QUANTITIES: [Quantity; 5] = [
     ("sump", "degC", 1.0, |row| row.sump_k - ZERO_DEGC_K),
 ];
 
+/// Means of a quantity of a log and of the computed one over stretches of a drive.
+struct Series {
+    stretch_s: f64,
+    /// Time, sums of time, log and computed car of each.
+    sums: Vec<[f64; 4]>,
+}
+
+impl Series {
+    /// Most stretches.
+    const MOST: f64 = 300.0;
+
+    fn new(duration_s: f64) -> Self {
+        Series {
+            stretch_s: (duration_s / Series::MOST).max(1.0),
+            sums: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, row: &Row, there: f64, here: f64) {
+        let middle_s = row.time_s - 0.5 * row.dt_s;
+        let at = (middle_s / self.stretch_s) as usize;
+        if self.sums.len() <= at {
+            self.sums.resize(at + 1, [0.0; 4]);
+        }
+        let own = [
+            row.dt_s,
+            row.dt_s * middle_s,
+            row.dt_s * there,
+            row.dt_s * here,
+        ];
+        for (sum, own) in self.sums[at].iter_mut().zip(own) {
+            *sum += own;
+        }
+    }
+
+    fn means(&self) -> Vec<[f64; 3]> {
+        let there = self.sums.iter().filter(|sum| sum[0] > 0.0);
+        there
+            .map(|sum| [1, 2, 3].map(|k| sum[k] / sum[0]))
+            .collect()
+    }
+}
+
 /// Engine speed, fuel and temperatures of a log next to those that are computed of the subject, step by step.
 fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let recorded = of.cycle.recording.as_deref();
@@ -132,6 +175,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
             continue;
         };
         let [mut seconds, mut mean, mut computed, mut square] = [0.0; 4];
+        let mut series = Series::new(rows.last().map_or(0.0, |row| row.time_s));
         for row in rows {
             let Some(there) = measured.mean(row.time_s - row.dt_s, row.time_s) else {
                 continue;
@@ -141,6 +185,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
             mean += row.dt_s * there;
             computed += row.dt_s * here;
             square += row.dt_s * (here - there) * (here - there);
+            series.add(row, there, here);
         }
         if seconds > 0.0 {
             own.measured.push(MeasuredSummary {
@@ -150,6 +195,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
                 computed: computed / seconds,
                 rms: (square / seconds).sqrt(),
                 seconds,
+                series: series.means(),
             });
         }
     }

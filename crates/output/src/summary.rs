@@ -100,6 +100,9 @@ pub struct MeasuredSummary {
     pub rms: f64,
     /// Time in which it was recorded, s.
     pub seconds: f64,
+    /// Means over up to 300 stretches of the drive: time at the middle, s, log, computed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub series: Vec<[f64; 3]>,
 }
 
 /// A repair of a recording.

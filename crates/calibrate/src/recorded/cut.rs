@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | CL-5 | overrun: a second, and the one before, in which the wheels give more than 3 % of the rated power (without a car: the car loses more than 0.7 m/s2), engine above 1.1 warm idle, road speed above 5 km/h; cut where the flow is below a tenth of that at idle | ASSUMED: more than an engine drags (1.0 to 1.5 bar), so that it needs no fuel |
 //! | CL-6 | fuel comes back between the engine speeds of the last second of a cut and the next one with fuel while the wheels give power: with a tenth of the flow at idle (cut ends), with 70 % of it (fuel is back) | derived: a threshold lies between them |
-//! | CL-7 | coolant from which fuel is cut: middle of the coldest 5 % of cut seconds and the warmest overrun without a cut below them, engine above CL-6 | derived |
+//! | CL-7 | coolant from which fuel is cut: the one that parts overrun without a cut from overrun with one, fewest seconds of either on the wrong side, engine above CL-6 | definition |
 
 use super::idle::{FEWEST, seconds};
 use super::resample::{between, estimate, quantile};
@@ -158,32 +158,37 @@ fn from_coolant(
     let fast = in_overrun
         .iter()
         .filter(|own| own.rpm.is_some_and(|rpm| rpm > cut_rpm));
-    let of = |wanted: bool| {
-        let own = fast.clone().filter(move |own| is_cut(own) == Some(wanted));
-        own.filter_map(|own| own.coolant_degc).collect::<Vec<f64>>()
-    };
-    let (mut cut, uncut) = (of(true), of(false));
-    if cut.len() + uncut.len() == 0 {
+    let list: Vec<(usize, (f64, bool))> = fast
+        .filter_map(|own| Some((own.block, (own.coolant_degc?, is_cut(own)?))))
+        .collect();
+    if list.is_empty() {
         return;
     }
-    let coldest = quantile(&mut cut, 0.05);
-    let end = coldest.unwrap_or(f64::INFINITY);
-    let colder = uncut.iter().copied().filter(|degc| *degc < end);
-    let warmest = colder.max_by(f64::total_cmp);
-    match coldest.zip(warmest) {
-        Some((coldest, warmest)) => found.add(Value {
+    let own = estimate(&list, parting); // CL-7
+    let colder = |degc: f64| {
+        list.iter()
+            .filter(|(_, (own, is_cut))| *own < degc && !is_cut)
+            .count()
+    };
+    match own.filter(|own| colder(own.value) >= FEWEST) {
+        Some(own) => found.add(Value {
             name: "fuel cut from",
             key: Some("engine.fuel.cut_from_degc"),
             label: "CL-7",
             unit: "degC",
-            value: 0.5 * (coldest + warmest),
-            range: Some([warmest, coldest]),
-            count: cut.len() + uncut.len(),
+            value: own.value,
+            range: own.range,
+            count: own.count,
             counted: "s",
             before: None,
         }),
         None => {
-            let coldest = coldest.map_or_else(String::new, |degc| {
+            let mut cut: Vec<f64> = list
+                .iter()
+                .filter(|(_, (_, is_cut))| *is_cut)
+                .map(|(_, (degc, _))| *degc)
+                .collect();
+            let coldest = quantile(&mut cut, 0.05).map_or_else(String::new, |degc| {
                 format!(
                     "; it is cut from {} degC on, the coldest of the log",
                     degc.round()
@@ -193,5 +198,27 @@ fn from_coolant(
                 "coolant from which fuel is cut: there is no overrun of a colder car without a cut{coldest}"
             ));
         }
+    }
+}
+
+/// The coolant that parts seconds without a cut from those with one, fewest of each on the wrong side; none where all are of one kind.
+fn parting(list: &mut Vec<(f64, bool)>) -> Option<f64> {
+    list.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let uncut = list.iter().filter(|(_, is_cut)| !is_cut).count();
+    if uncut == 0 || uncut == list.len() {
+        return None;
+    }
+    // Below the first all are cut: those without a cut are on the wrong side.
+    let (mut wrong, mut best) = (uncut, (uncut, 0));
+    for (k, (_, is_cut)) in list.iter().enumerate() {
+        wrong = if *is_cut { wrong + 1 } else { wrong - 1 };
+        if wrong < best.0 {
+            best = (wrong, k + 1);
+        }
+    }
+    let at = |k: usize| list.get(k).map(|own| own.0);
+    match best.1 {
+        0 => None,
+        k => at(k - 1).map(|below| 0.5 * (below + at(k).unwrap_or(below))),
     }
 }

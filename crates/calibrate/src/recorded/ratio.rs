@@ -2,10 +2,10 @@
 //!
 //! | label | statement | known from |
 //! |---|---|---|
-//! | CL-8 | N = n/v of a running engine; steps: of the steps of 0.02 of ln N between its 5 and 95 % quantiles, fewer than half hold a quarter of an even share, in seconds above 25 km/h and below 1 m/s2 whose neighbours are within 3 % | ASSUMED: a stepped gearbox has gaps between its gears; 14 to 39 % in three logs of manual boxes, 65 to 67 % of two computed CVTs |
+//! | CL-8 | N = n/v of a running engine; steps: of the steps of 0.02 of ln N between its 5 and 95 % quantiles, fewer than 47 % hold a quarter of an even share, in seconds above 25 km/h and below 1 m/s2 whose neighbours are within 3 % | ASSUMED: a stepped gearbox has gaps between its gears; 14 to 39 % in three logs of manual boxes, 55 to 67 % of three computed CVTs |
 //! | CL-9 | N_high: the least N that is held, median within 1.5 % of the mode below the 30 % quantile above 50 km/h, for 30 s or more, with fewer seconds in the same width below it | ASSUMED |
 //! | CL-10 | belt ratio = N 3.6 r 2 pi/60 / i_fd, without slip of belt and tyres | derived; slip of belt and tyres is 1 to 3 % in it |
-//! | CL-11 | lock-up after a start from rest: between the speeds of the last second above and the first within 1.03 N_low; opening: between those of the last second before a stop above, and the first within 1.08 idle speed | derived: in low until locked (RC-6); N_low of the car |
+//! | CL-11 | lock-up after a start from rest: between the speeds of the last second above and the first within 1.02 N_low; opening: between those of the last second before a stop above, and the first within 1.08 idle speed | derived: in low until locked (RC-6); N_low of the car |
 
 use super::idle::FEWEST;
 use super::resample::{Estimate, between, median, quantile};
@@ -22,7 +22,7 @@ const KIND_S: usize = 200;
 /// Fewest bins, so that gears would have gaps between them.
 const KIND_BINS: usize = 15;
 /// Share of the bins that a gearbox without steps fills at least, per cent (CL-8).
-const FILLED: f64 = 50.0;
+const FILLED: f64 = 47.0;
 /// Fewest events of a speed of lock-up.
 const FEWEST_EVENTS: usize = 4;
 
@@ -213,7 +213,7 @@ fn lock_up(found: &mut Found) {
             && let Some(ratio) = own.rpm_per_kmh()
         {
             let gains = own.accel() > 0.0;
-            match ratio > 1.03 * low {
+            match ratio > 1.02 * low {
                 true => open_kmh = Some(own.kmh()),
                 false => {
                     if gains && own.is_warm() {

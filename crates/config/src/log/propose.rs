@@ -188,6 +188,13 @@ fn speed_unit(pairs: &[(f64, f64)]) -> (&'static str, String) {
     (found.map_or("km/h", |(name, _)| name), hint)
 }
 
+/// True if a word of a name is `time` but for a letter.
+fn is_like_time(name: &str) -> bool {
+    let bare = crate::channel::bare(name);
+    bare.split('_')
+        .any(|word| word.len() > 2 && strsim::levenshtein(word, "time") == 1)
+}
+
 /// Proposed columns, and a hint about the unit of the speed.
 pub(super) struct Guess {
     pub columns: String,
@@ -230,7 +237,22 @@ pub(super) fn guess(
     // A port counts many times: of those that are named the one that rises is meant.
     let all = || (0..sheet.width).filter(|column| Some(*column) != speed_column && rises(column));
     let is_named = |column: &usize| chosen.no_unit.contains(&(Quantity::Time, *column));
-    let named_time = all().find(is_named);
+    let changes = |column: &usize| {
+        let values = raw(sheet, *column);
+        values.windows(2).filter(|pair| pair[1] > pair[0]).count()
+    };
+    let most = all().map(|column| changes(&column)).max().unwrap_or(0);
+    // Minutes since an event rise, too, but a tenth as often.
+    let is_fine = |column: &usize| 10 * changes(column) >= most;
+    let is_misspelt = |column: &usize| {
+        sheet
+            .names
+            .get(*column)
+            .is_some_and(|name| is_like_time(name))
+    };
+    let named_time = all().find(|column| is_named(column) && is_fine(column));
+    let named_time = named_time.or_else(|| all().find(is_misspelt));
+    let named_time = named_time.or_else(|| all().find(is_named));
     let named_time =
         named_time.or_else(|| named(Quantity::Time).filter(|_| all().next().is_none()));
     let time = match (chosen.times.first(), named_time) {

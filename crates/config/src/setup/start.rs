@@ -38,7 +38,13 @@ pub fn start_of_nodes(list: &[(String, f64)]) -> Result<StartTemperatures, Probl
 /// sensor, and is passed over.
 #[must_use]
 pub fn start_of_log(recording: &Recording) -> Option<StartTemperatures> {
-    let of = |name: &str| recording.first(name).filter(|degc| LOGGED.contains(*degc));
+    // No sensor is finer than 0.1 K.
+    let first = |name: &str| {
+        recording
+            .first(name)
+            .map(|degc| (10.0 * degc).round() / 10.0)
+    };
+    let of = |name: &str| first(name).filter(|degc| LOGGED.contains(*degc));
     let given_k = START_NODES.map(|name| of(name).map(|degc| degc + ZERO_DEGC_K));
     let is_any = given_k.iter().any(Option::is_some);
     is_any.then_some(StartTemperatures { given_k })

@@ -60,11 +60,7 @@ pub(super) fn from_script<'t>(
         let why = format!(
             "the ratios of `{name}` are {low} to {high}: a final drive is in them, with which a belt has none so large"
         );
-        return Some(Err(unread(
-            line,
-            why,
-            "ratios of the belt, such as ratio=gb_ratio/FINAL_DRIVE",
-        )));
+        return Some(Err(unread(line, why, "ratios of the belt alone")));
     }
     let mut rows: Vec<Row<'t>> = Vec::new();
     let (mut measured, mut marked) = (0, 0);

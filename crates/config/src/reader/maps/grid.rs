@@ -124,7 +124,7 @@ fn script<'t>(
                     &why,
                     &lines,
                     problems,
-                    "say which ratio is meant: KEY = { value = \"FILE\", columns = \"ratio=NAME\" }",
+                    "say which ratio is meant: KEY = { value = \"FILE\", columns = \"ratio=gb_ratio/FINAL_DRIVE\" }",
                 );
                 return none;
             }
