@@ -166,7 +166,7 @@ fn cases() -> Vec<(&'static str, &'static str, Right)> {
             Table(
                 rows(
                     "k12_sumo_one_after_other.csv",
-                    ("vehicle_id", "car_a"),
+                    ("vehicle_id", "car_b"),
                     ["timestep_time", "vehicle_speed"],
                     3.6,
                 ),

@@ -7,7 +7,7 @@
 //! | CL-7 | coolant from which fuel is cut: the one that parts overrun without a cut from overrun with one, fewest seconds of either on the wrong side, engine above CL-6 | definition |
 
 use super::idle::{FEWEST, seconds};
-use super::resample::{between, estimate, quantile};
+use super::resample::{Estimate, between, estimate, quantile};
 use super::seconds::Second;
 use super::{Found, Value};
 
@@ -62,20 +62,9 @@ pub fn find(found: &mut Found) {
         ));
         return;
     }
-    let mean = |list: &mut Vec<f64>| Some(list.iter().sum::<f64>() / list.len() as f64);
+    let mean = |list: &mut [f64]| Some(list.iter().sum::<f64>() / list.len() as f64);
     let Some(share) = estimate(&flags, mean) else {
         return;
-    };
-    let value = |name, label, key, unit, own: super::resample::Estimate, counted| Value {
-        name,
-        key,
-        label,
-        unit,
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted,
-        before: None,
     };
     found.add(value(
         "fuel cut in overrun",
@@ -91,61 +80,81 @@ pub fn find(found: &mut Found) {
         );
         return;
     }
-    let events = |level: f64| -> Vec<[f64; 2]> {
-        let mut list = Vec::new();
-        let mut cut: Option<Second> = None;
-        for pair in &pairs {
-            let [before, own] = pair;
-            if is_cut(before) == Some(true) && before.is_warm() {
-                cut = Some(*before);
-            }
-            let flow = own.fuel_g_s.unwrap_or(0.0);
-            // Power again is another reason for fuel.
-            let still = own.accel() < 0.0 && own.share.is_none_or(|share| share < 0.0);
-            if !still {
-                cut = None;
-            }
-            if let Some((high, low)) = cut.and_then(|cut| cut.rpm).zip(own.rpm)
-                && flow >= level * idle_g_s
-                && is_cut(own) == Some(false)
-            {
-                list.push([low, high]); // CL-6
-                cut = None;
-            }
+    if let Some(cut_rpm) = ends(found, &pairs, idle_g_s) {
+        from_coolant(found, &in_overrun, cut_rpm, &is_cut);
+    }
+}
+
+/// A value with what it is from.
+fn value(
+    name: &'static str,
+    label: &'static str,
+    key: Option<&'static str>,
+    unit: &'static str,
+    own: Estimate,
+    counted: &'static str,
+) -> Value {
+    Value {
+        name,
+        key,
+        label,
+        unit,
+        value: own.value,
+        range: own.range,
+        count: own.count,
+        counted,
+        before: None,
+    }
+}
+
+/// Engine speeds between which a flow of so much is back (CL-6).
+fn backs(pairs: &[[Second; 2]], idle_g_s: f64, level: f64) -> Vec<[f64; 2]> {
+    let is_cut = |own: &Second| own.fuel_g_s.map(|flow| flow < CUT_SHARE * idle_g_s);
+    let mut list = Vec::new();
+    let mut cut: Option<Second> = None;
+    for [before, own] in pairs {
+        if is_cut(before) == Some(true) && before.is_warm() {
+            cut = Some(*before);
         }
-        list
-    };
+        let flow = own.fuel_g_s.unwrap_or(0.0);
+        // Power again is another reason for fuel.
+        let still = own.accel() < 0.0 && own.share.is_none_or(|share| share < 0.0);
+        if !still {
+            cut = None;
+        }
+        if let Some((high, low)) = cut.and_then(|cut| cut.rpm).zip(own.rpm)
+            && flow >= level * idle_g_s
+            && is_cut(own) == Some(false)
+        {
+            list.push([low, high]); // CL-6
+            cut = None;
+        }
+    }
+    list
+}
+
+/// Engine speeds at which a cut ends; that with the first fuel.
+fn ends(found: &mut Found, pairs: &[[Second; 2]], idle_g_s: f64) -> Option<f64> {
+    let events = |level: f64| backs(pairs, idle_g_s, level);
     let ends = events(CUT_SHARE);
     let Some(end) = between(&ends).filter(|own| own.count >= FEWEST_EVENTS) else {
+        let count = match ends.len() {
+            1 => "1 end".to_owned(),
+            n => format!("{n} ends"),
+        };
         found.cannot(format!(
-            "engine speed at which fuel comes back: {} of a cut in overrun, {FEWEST_EVENTS} are needed",
-            match ends.len() {
-                1 => "1 end".to_owned(),
-                n => format!("{n} ends"),
-            }
+            "engine speed at which fuel comes back: {count} of a cut in overrun, {FEWEST_EVENTS} are needed"
         ));
-        return;
+        return None;
     };
     let back = between(&events(BACK_SHARE)).filter(|own| own.count >= FEWEST_EVENTS);
-    found.add(value(
-        "fuel cut ends",
-        "CL-6",
-        Some("engine.fuel.cut_above_rpm"),
-        "rpm",
-        end,
-        "ends",
-    ));
+    let key = Some("engine.fuel.cut_above_rpm");
+    found.add(value("fuel cut ends", "CL-6", key, "rpm", end, "ends"));
     let mut own = back.unwrap_or(end);
     own.value = own.value.min(end.value - LEAST_BAND_RPM);
-    found.add(value(
-        "fuel is back",
-        "CL-6",
-        Some("engine.fuel.fuel_back_rpm"),
-        "rpm",
-        own,
-        "ends",
-    ));
-    from_coolant(found, &in_overrun, end.value, &is_cut);
+    let key = Some("engine.fuel.fuel_back_rpm");
+    found.add(value("fuel is back", "CL-6", key, "rpm", own, "ends"));
+    Some(end.value)
 }
 
 /// Coolant from which fuel is cut (CL-7).
@@ -202,7 +211,7 @@ fn from_coolant(
 }
 
 /// The coolant that parts seconds without a cut from those with one, fewest of each on the wrong side; none where all are of one kind.
-fn parting(list: &mut Vec<(f64, bool)>) -> Option<f64> {
+fn parting(list: &mut [(f64, bool)]) -> Option<f64> {
     list.sort_by(|a, b| a.0.total_cmp(&b.0));
     let uncut = list.iter().filter(|(_, is_cut)| !is_cut).count();
     if uncut == 0 || uncut == list.len() {

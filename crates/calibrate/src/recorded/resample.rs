@@ -50,9 +50,9 @@ pub fn median(values: &[(usize, f64)]) -> Option<Estimate> {
 /// A statistic of values in blocks; none where it has no number.
 pub fn estimate<T: Copy>(
     values: &[(usize, T)],
-    statistic: impl Fn(&mut Vec<T>) -> Option<f64>,
+    statistic: impl Fn(&mut [T]) -> Option<f64>,
 ) -> Option<Estimate> {
-    let value = statistic(&mut values.iter().map(|(_, own)| *own).collect())?;
+    let value = statistic(&mut values.iter().map(|(_, own)| *own).collect::<Vec<T>>())?;
     let mut blocks: BTreeMap<usize, Vec<T>> = BTreeMap::new();
     let every = values.len().div_ceil(MAX_VALUES).max(1);
     for (block, own) in values.iter().step_by(every) {
@@ -108,7 +108,7 @@ mod tests {
         // 100 blocks of 5 equal values: the seconds of a block tell nothing new.
         let blocks: Vec<f64> = (0..100).map(|_| random.random_range(-1.0..1.0)).collect();
         let values: Vec<(usize, f64)> = (0..500).map(|k| (k / 5, blocks[k / 5])).collect();
-        let mean = |list: &mut Vec<f64>| Some(list.iter().sum::<f64>() / list.len() as f64);
+        let mean = |list: &mut [f64]| Some(list.iter().sum::<f64>() / list.len() as f64);
         let found = estimate(&values, mean).unwrap();
         let [low, high] = found.range.unwrap();
         let own = blocks.iter().sum::<f64>() / 100.0;

@@ -63,7 +63,7 @@ fn level(found: &mut Found) {
         .iter()
         .filter_map(|own| Some((own.block, own.coolant_degc?)))
         .collect();
-    let median = |list: &mut Vec<f64>| quantile(list, 0.5);
+    let median = |list: &mut [f64]| quantile(list, 0.5);
     let Some(own) = estimate(&degc, median).filter(|own| own.count >= LEVEL_S) else {
         found.cannot(format!(
             "thermostat: {} with coolant that stays, {LEVEL_S} are needed",
@@ -135,7 +135,7 @@ fn rises(found: &Found) -> Vec<(usize, Rise)> {
 }
 
 /// Flow over rise, of a whole warm-up.
-fn per_kelvin(list: &mut Vec<Rise>) -> Option<f64> {
+fn per_kelvin(list: &mut [Rise]) -> Option<f64> {
     let [rise, given] = list
         .iter()
         .fold([0.0, 0.0], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);

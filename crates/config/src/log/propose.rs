@@ -201,39 +201,23 @@ pub(super) struct Guess {
     pub hint: String,
 }
 
-/// Columns for a file whose names do not say all: by the names that mean something, by a column that never falls, by the units that fit a car.
-pub(super) fn guess(
+/// The column that is named as a time and rises like one, and the first that rises.
+fn time_columns(
     sheet: &Sheet<'_>,
     chosen: &Chosen,
-    filters: &[(String, String)],
-) -> Option<Guess> {
-    let mut hint = String::new();
-    let is_number = |column: &usize| raw(sheet, *column).len() > 1;
-    let named = |quantity: Quantity| {
-        chosen
-            .no_unit
-            .iter()
-            .find(|(own, _)| *own == quantity)
-            .map(|(_, column)| *column)
-    };
+    speed_column: Option<usize>,
+) -> (Option<usize>, Option<usize>) {
     let rises = |column: &usize| {
         let values = raw(sheet, *column);
         values.len() > 2
             && values.windows(2).all(|pair| pair[1] >= pair[0])
             && values.last() > values.first()
     };
-    let stamps = |column: &usize| {
-        sheet
-            .sample
-            .first()
-            .and_then(|row| row.get(*column))
-            .and_then(|cell| Form::of(cell))
-    };
-    let speed_column = chosen
-        .speeds
-        .first()
-        .map(|source| source.column)
-        .or_else(|| named(Quantity::Speed));
+    let times = chosen.no_unit.iter();
+    let named = times
+        .filter(|(own, _)| *own == Quantity::Time)
+        .map(|(_, column)| *column)
+        .next();
     // A port counts many times: of those that are named the one that rises is meant.
     let all = || (0..sheet.width).filter(|column| Some(*column) != speed_column && rises(column));
     let is_named = |column: &usize| chosen.no_unit.contains(&(Quantity::Time, *column));
@@ -253,14 +237,43 @@ pub(super) fn guess(
     let named_time = all().find(|column| is_named(column) && is_fine(column));
     let named_time = named_time.or_else(|| all().find(is_misspelt));
     let named_time = named_time.or_else(|| all().find(is_named));
-    let named_time =
-        named_time.or_else(|| named(Quantity::Time).filter(|_| all().next().is_none()));
+    let named_time = named_time.or_else(|| named.filter(|_| all().next().is_none()));
+    (named_time, all().next())
+}
+
+/// Columns for a file whose names do not say all: by the names that mean something, by a column that never falls, by the units that fit a car.
+pub(super) fn guess(
+    sheet: &Sheet<'_>,
+    chosen: &Chosen,
+    filters: &[(String, String)],
+) -> Option<Guess> {
+    let mut hint = String::new();
+    let is_number = |column: &usize| raw(sheet, *column).len() > 1;
+    let named = |quantity: Quantity| {
+        chosen
+            .no_unit
+            .iter()
+            .find(|(own, _)| *own == quantity)
+            .map(|(_, column)| *column)
+    };
+    let stamps = |column: &usize| {
+        sheet
+            .sample
+            .first()
+            .and_then(|row| row.get(*column))
+            .and_then(|cell| Form::of(cell))
+    };
+    let speed_column = chosen
+        .speeds
+        .first()
+        .map(|source| source.column)
+        .or_else(|| named(Quantity::Speed));
+    let (named_time, rising) = time_columns(sheet, chosen, speed_column);
     let time = match (chosen.times.first(), named_time) {
         (Some(time), _) => time.clone(),
         (None, named) => {
-            let rising = || all().next();
             let stamped = || (0..sheet.width).find(|column| stamps(column).is_some());
-            let column = named.or_else(stamped).or_else(rising)?;
+            let column = named.or_else(stamped).or(rising)?;
             let reading = match stamps(&column).filter(|_| !is_number(&column)) {
                 Some(form) => Reading::Stamp(form),
                 None => Reading::Number(Quantity::Time.unit(time_unit(&raw(sheet, column)))?),

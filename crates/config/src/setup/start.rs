@@ -1,7 +1,7 @@
 //! Temperatures of single nodes at the start, as a user writes them: `coolant=81,sump=60`.
 
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
-use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
+use cvtcycle_model::thermal::{COOLANT, START_NODES, StartTemperatures};
 
 use super::START;
 use crate::{Bound, Problem, did_you_mean};
@@ -34,7 +34,7 @@ pub fn start_of_nodes(list: &[(String, f64)]) -> Result<StartTemperatures, Probl
     nodes(&text.join(","), parts)
 }
 
-/// The temperatures with which a log begins, of the nodes that it has channels of; none without any. A value out of the range of a start is that of a missing
+/// The temperatures with which a log begins, of the nodes that it has channels of; none without the coolant's, as an oil may be the engine's or the box's. A value out of the range of a start is that of a missing
 /// sensor, and is passed over.
 #[must_use]
 pub fn start_of_log(recording: &Recording) -> Option<StartTemperatures> {
@@ -46,8 +46,8 @@ pub fn start_of_log(recording: &Recording) -> Option<StartTemperatures> {
     };
     let of = |name: &str| first(name).filter(|degc| LOGGED.contains(*degc));
     let given_k = START_NODES.map(|name| of(name).map(|degc| degc + ZERO_DEGC_K));
-    let is_any = given_k.iter().any(Option::is_some);
-    is_any.then_some(StartTemperatures { given_k })
+    let start = StartTemperatures { given_k };
+    start.given_k[COOLANT].is_some().then_some(start)
 }
 
 fn nodes<'a>(

@@ -4,7 +4,7 @@ use super::fuel::{self, Unread};
 use super::row::Row;
 use super::script::{Matrix, Script};
 use crate::csv::{Line, Schema};
-use crate::readable;
+use crate::{Bound, readable};
 
 /// Names that are known, in words.
 pub(super) const NAMES: &str =
@@ -16,8 +16,8 @@ const COLUMNS: [&str; 4] = [
     "input_torque_nm",
     "efficiency",
 ];
-/// Largest ratio of a belt or a chain: a larger one has a final drive in it.
-const LARGEST: f64 = 4.0;
+/// Ratios of a belt or a chain: larger ones have a final drive in them.
+const BELT: Bound = Bound::closed(0.2, 4.0);
 
 /// Columns, rows, and how they were read.
 type Found<'t> = (Vec<usize>, Vec<Row<'t>>, Option<String>);
@@ -32,81 +32,109 @@ pub(super) fn places(schema: &Schema) -> Option<[usize; 4]> {
         .then(|| found.map(Option::unwrap_or_default))
 }
 
+/// A reason for which a script is not read, with a hint.
+pub(super) type Refused = (Unread, &'static str);
+
+/// Hints: what is to be written in the script, and which ratios are meant.
+const WRITE: &str = "correct the script: numbers, ranges, sums and products are read";
+const RATIO: &str = "say which ratios are meant: KEY = { value = \"FILE\", columns = \"ratio=gb_ratio/FINAL_DRIVE\" }";
+
+fn refused(line: usize, why: String, allowed: &'static str, hint: &'static str) -> Refused {
+    (Unread { line, why, allowed }, hint)
+}
+
 /// The map of a script; `ratio` is an expression in place of `gb_ratio`. None where the script has no such map.
 pub(super) fn from_script<'t>(
     places: [usize; 4],
     script: &Script,
     lines: &[Line<'t>],
     ratio: Option<&str>,
-) -> Option<Result<Found<'t>, Unread>> {
+) -> Option<Result<Found<'t>, Refused>> {
     let (_, speeds) = script.find("gb_map_spd")?;
     let (_, torques) = script.find("gb_map_trq")?;
     let first = matrix(script, 1)?.1.lines.first().copied().unwrap_or(1);
-    let unread = |line: usize, why: String, allowed: &'static str| Unread { line, why, allowed };
     let name = ratio.unwrap_or("gb_ratio");
     let Some(ratios) = script.value(name) else {
+        let line = script.unread("gb_ratio").unwrap_or(first);
         let why = format!("`{name}` is computed in a way that is not read");
-        return Some(Err(unread(first, why, NAMES)));
+        return Some(Err(refused(line, why, NAMES, RATIO)));
     };
     let line = ratios.lines.first().copied().unwrap_or(first);
-    let [low, high] = ratios
-        .values
-        .iter()
-        .fold([f64::INFINITY, 0.0_f64], |[low, high], own| {
-            [low.min(*own), high.max(*own)]
-        });
-    if !(high <= LARGEST) {
+    Some(
+        whole(
+            (name, &ratios, line),
+            [speeds, torques],
+            places,
+            script,
+            lines,
+        )
+        .map(|(rows, marks)| {
+            let count = ratios.values.len();
+            let read_as =
+                format!("gb_map_spd, gb_map_trq, {name} and {count} maps of a script{marks}");
+            (places.to_vec(), rows, Some(read_as))
+        }),
+    )
+}
+
+/// The rows of all ratios, and how many cells are marked as measured, in words.
+fn whole<'t>(
+    (name, ratios, line): (&str, &Matrix, usize),
+    axes: [&Matrix; 2],
+    places: [usize; 4],
+    script: &Script,
+    lines: &[Line<'t>],
+) -> Result<(Vec<Row<'t>>, String), Refused> {
+    let low = ratios.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = ratios.values.iter().copied().fold(0.0, f64::max);
+    if !ratios.values.iter().all(|own| BELT.contains(*own)) {
         let [low, high] = [low, high].map(|own| readable(own, 3));
         let why = format!(
-            "the ratios of `{name}` are {low} to {high}: a final drive is in them, with which a belt has none so large"
+            "the ratios of `{name}` are {low} to {high}, which no belt has: is a final drive in them?"
         );
-        return Some(Err(unread(line, why, "ratios of the belt alone")));
+        return Err(refused(line, why, "0.2 to 4", RATIO));
     }
     let mut rows: Vec<Row<'t>> = Vec::new();
     let (mut measured, mut marked) = (0, 0);
     for (k, ratio) in ratios.values.iter().enumerate() {
         let Some((name, map)) = matrix(script, k + 1) else {
+            let ratio = readable(*ratio, 3);
             let why = format!(
-                "there is no map gb_map{}_eff_raw for the ratio {}",
-                k + 1,
-                readable(*ratio, 3)
+                "there is no map gb_map{}_eff_raw for the ratio {ratio}",
+                k + 1
             );
-            return Some(Err(unread(line, why, "a map for each ratio")));
+            return Err(refused(line, why, "a map for each ratio", WRITE));
         };
+        let at = map.lines.first().copied().unwrap_or(line);
         let columns = [places[1], places[2], places[3]];
-        let table = match fuel::table([speeds, torques, map], columns, true, lines) {
-            Ok((_, table)) => table,
-            Err(why) => {
-                let line = map.lines.first().copied().unwrap_or(line);
-                return Some(Err(unread(
-                    line,
-                    format!("{name} {why}"),
-                    "two vectors and a matrix over them",
-                )));
-            }
-        };
+        let table = fuel::table([axes[0], axes[1], map], columns, true, lines);
+        let (_, table) = table.map_err(|why| {
+            let allowed = "two vectors and a matrix over them";
+            refused(at, format!("{name} {why}"), allowed, WRITE)
+        })?;
+        let is_share = |own: &&f64| !(0.0..=1.0).contains(*own) && own.is_finite();
+        if let Some(wrong) = map.values.iter().find(is_share) {
+            let why = format!("{name} has an efficiency of {}", readable(*wrong, 3));
+            return Err(refused(at, why, "0 to 1", WRITE));
+        }
         let flags = script.find(&format!("gb_map{}_data_raw", k + 1));
-        if let Some((_, flags)) = flags.filter(|(_, flags)| flags.values.len() == map.values.len())
-        {
+        if let Some((_, flags)) = flags.filter(|(_, own)| own.values.len() == map.values.len()) {
             marked += flags.values.len();
             measured += flags.values.iter().filter(|own| **own > 0.0).count();
         }
-        let whole = table
+        let finite = table
             .into_iter()
             .filter(|row| row.values.iter().all(|x| x.is_finite()));
-        rows.extend(whole.map(|row| Row {
+        rows.extend(finite.map(|row| Row {
             values: std::iter::once(*ratio).chain(row.values).collect(),
             ..row
         }));
     }
-    let mut read_as = format!(
-        "gb_map_spd, gb_map_trq, {name} and {} maps of a script",
-        ratios.values.len()
-    );
-    if marked > 0 {
-        read_as += &format!(", {measured} of {marked} cells marked as measured");
-    }
-    Some(Ok((places.to_vec(), rows, Some(read_as))))
+    let marks = match marked {
+        0 => String::new(),
+        all => format!(", {measured} of {all} cells marked as measured"),
+    };
+    Ok((rows, marks))
 }
 
 /// The efficiency at the ratio of a number.

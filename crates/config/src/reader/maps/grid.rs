@@ -119,13 +119,8 @@ fn script<'t>(
         let found = box_script::from_script(places, &script, &lines, ratio.as_deref());
         match found.filter(|_| is_own) {
             Some(Ok(found)) => return found,
-            Some(Err(why)) => {
-                unread(
-                    &why,
-                    &lines,
-                    problems,
-                    "say which ratio is meant: KEY = { value = \"FILE\", columns = \"ratio=gb_ratio/FINAL_DRIVE\" }",
-                );
+            Some(Err((why, hint))) => {
+                unread(&why, &lines, problems, hint);
                 return none;
             }
             None => {}
@@ -143,7 +138,15 @@ fn script<'t>(
     if let Some(found) = full_load(schema, &script, &lines) {
         return found;
     }
-    let hint = "say which names are meant: KEY = { value = \"FILE\", columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\" }";
+    let is_box = box_script::places(schema).is_some();
+    let hint = match is_box {
+        true => {
+            "say which names are meant: KEY = { value = \"FILE\", columns = \"ratio=NAME,speed=NAME:rad/s,torque=NAME:Nm,efficiency=NAME\" }"
+        }
+        false => {
+            "say which names are meant: KEY = { value = \"FILE\", columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\" }"
+        }
+    };
     match is_fuel
         .then(|| fuel::from_script(&script, &lines))
         .flatten()
@@ -154,9 +157,9 @@ fn script<'t>(
             none
         }
         None => {
-            let allowed = match box_script::places(schema) {
-                Some(_) => box_script::NAMES,
-                None => fuel::SCRIPT_NAMES,
+            let allowed = match is_box {
+                true => box_script::NAMES,
+                false => fuel::SCRIPT_NAMES,
             };
             problems.file(
                 Problem::missing("the script has no table that is known")
