@@ -2,7 +2,7 @@
 //!
 //! | label | statement | known from |
 //! |---|---|---|
-//! | CL-12 | drive: median engine speed in bands of the power at the wheels over rated power (mean with the second before, within 4 %, or a third of itself, of that two seconds before), at its median; warm car, above 30 km/h, ratio 3 % off its ends and within 5 % of the second before | definition: RC-13 asks for engine speed over that share; power by the car on the drive of the log |
+//! | CL-12 | drive: median engine speed in bands of the power at the wheels over rated power (mean with the second before, within 4 %, or a third of itself, of that two seconds before), at its median; warm car, above 30 km/h, ratio 3 % off its ends, engine speed within 5 % of the second before | definition: RC-13 asks for engine speed over that share; power by the car on the drive of the log |
 //! | CL-13 | overrun: the same in bands of road speed while the wheels give power | definition: RC-13 |
 //! | CL-14 | share of the variance about the line that a straight line over road speed explains | definition |
 
@@ -116,12 +116,12 @@ fn drives(found: &Found, own: &[Second]) -> Option<On> {
     let ratio = last.rpm_per_kmh()?;
     let share = 0.5 * (last.share? + before.share?);
     let even = (last.share? - first.share?).abs() < f64::max(4.0, share / 3.0);
-    let moves = (ratio / before.rpm_per_kmh()?).ln().abs() < 0.05;
+    let holds = (last.rpm? / before.rpm?).ln().abs() < 0.05;
     let off = |end: Option<f64>| end.is_none_or(|end| (ratio / end).ln().abs() > 0.03);
     let inside = off(found.ratios.low) && off(found.ratios.high);
     let follows = last.follows(before) && before.follows(first);
     let fits =
-        follows && even && moves && inside && share > 0.0 && last.is_warm() && last.kmh() > 30.0;
+        follows && even && holds && inside && share > 0.0 && last.is_warm() && last.kmh() > 30.0;
     fits.then_some(On {
         block: last.block,
         x: share,
