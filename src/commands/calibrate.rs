@@ -78,8 +78,8 @@ pub struct CalibrateArgs {
 
 /// A plan, or logs.
 pub enum Experiment {
-    Plan(CalibrationPlan, Option<OutputDir>),
-    Logs(logs::LogsPlan),
+    Plan(Box<(CalibrationPlan, Option<OutputDir>)>),
+    Logs(Box<logs::LogsPlan>),
 }
 
 /// True if a word names a plan: a built-in calibration, or a TOML file.
@@ -147,7 +147,9 @@ impl Execute for CalibrateArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         if !self.plan.iter().any(|word| is_plan(word)) {
-            return self.logs(problems).map(Experiment::Logs);
+            return self
+                .logs(problems)
+                .map(|plan| Experiment::Logs(Box::new(plan)));
         }
         self.only_logs(problems);
         handle_interrupts();
@@ -165,13 +167,13 @@ impl Execute for CalibrateArgs {
         search.starts = starts.map_or(search.starts, |starts| starts as usize);
         search.seed = seed.unwrap_or(search.seed);
         plan.leave_out &= !self.no_folds;
-        Some(Experiment::Plan(plan, out))
+        Some(Experiment::Plan(Box::new((plan, out))))
     }
 
     fn run(&self, experiment: Self::Plan, terminal: Terminal) -> CommandResult {
         let (plan, out) = match experiment {
-            Experiment::Logs(plan) => return logs::run(plan, &self.output, terminal),
-            Experiment::Plan(plan, out) => (plan, out),
+            Experiment::Logs(plan) => return logs::run(*plan, &self.output, terminal),
+            Experiment::Plan(both) => *both,
         };
         let progress = Progress::evaluations(self.output.quiet);
         let outcome = calibrate(&plan, &progress);

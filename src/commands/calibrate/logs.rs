@@ -68,7 +68,7 @@ pub fn run(plan: LogsPlan, args: &OutputArgs, terminal: Terminal) -> CommandResu
     let files = WrittenFiles::write(plan.out, |dir| {
         if let Some(text) = vehicle(&findings, title.as_deref().unwrap_or_default()) {
             dir.put("car.toml", &text)?;
-            dir.put("ranges.toml", &ranges(&findings))?;
+            dir.put("ranges.toml", ranges(&findings))?;
         }
         dir.put("findings.json", &json)?;
         Ok("")
