@@ -10,7 +10,7 @@ use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::output::summary::StartWord;
+use cvtcycle::output::summary::{AUTO, StartWord};
 use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
@@ -80,11 +80,12 @@ impl FormulationArgs {
 #[derive(Args, Clone, Debug)]
 pub struct DriveArgs {
     /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), all
-    /// temperatures in degC, or those of single nodes, coolant=81,sump=60: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10)
+    /// temperatures in degC, or those of single nodes, coolant=81,sump=60: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10);
+    /// `auto`: those with which a log begins, where the cycle is one with such channels, else soak
     #[arg(
         long,
-        value_name = "soak|warm|DEGC|NODE=DEGC,...",
-        default_value = "soak",
+        value_name = "auto|soak|warm|DEGC|NODE=DEGC,...",
+        default_value = "auto",
         allow_hyphen_values = true
     )]
     pub start: String,
@@ -170,7 +171,7 @@ impl AmbientsArgs {
 fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
     match value {
-        "soak" => return word(Start::Soak),
+        AUTO | "soak" => return word(Start::Soak),
         "warm" => return word(Start::Warm),
         nodes if nodes.contains('=') => {
             let found = setup::start_nodes(nodes);
@@ -181,10 +182,10 @@ fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     }
     let named = |mut problem: Problem| {
         problem.allowed = format!(
-            "soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
+            "auto, soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
             START.in_unit("°C")
         );
-        let question = did_you_mean(value, &["soak", "warm"]);
+        let question = did_you_mean(value, &[AUTO, "soak", "warm"]);
         if !question.is_empty() {
             problem.hint = question;
         }

@@ -1,5 +1,6 @@
 //! `calibrate`: parameters fitted to measurements, with their errors.
 
+mod logs;
 mod tables;
 
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -9,13 +10,14 @@ use cvtcycle::calibrate::outcome::Outcome;
 use cvtcycle::calibrate::outcome::tables as csv_tables;
 use cvtcycle::calibrate::plan::CalibrationPlan;
 use cvtcycle::calibrate::{MAX_STARTS, calibrate, fitted, open};
-use cvtcycle::config::setup::Kind;
+use cvtcycle::config::setup::{AMBIENT, Kind, Options, is_path};
 use cvtcycle::config::{ProblemKind, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
 
 use super::{Execute, threads};
-use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};
+use crate::args::problems::{bad_value, overrides, problem};
+use crate::args::{ColumnsArgs, Names, OutArgs, OutputArgs, ThreadArgs, count_if_given, number};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -30,6 +32,12 @@ Examples:
   cvtcycle calibrate rover_216_warm_up
   cvtcycle calibrate docs/calibration_example/plan.toml --out fitted
   cvtcycle run --vehicle fitted/rover_216_cvt_fitted.toml
+  cvtcycle calibrate monday.csv tuesday.csv --vehicle civic_20_cvt --out mine
+  cvtcycle run --vehicle mine/car.toml
+
+Logs (any file that is no .toml, as `cvtcycle log` reads it) tell idle, fuel cut, ratio, lock-up, operating line and warm-up of the \
+car that --vehicle is but for these, with the range of 90 % of resamples, and what they cannot tell; --out writes car.toml, that car \
+with these values, ranges.toml, their ranges as factors of a study, and findings.json.
 
 docs/calibration.md describes plans, data and results. A fit is no validation: the prediction error \
 is that of the folds that were left out. Exit codes: 0 success; 1 the search did not converge or was \
@@ -37,9 +45,20 @@ stopped by Ctrl-C, a parameter affects no observation, or data are outside the v
 (results are printed and written nevertheless, with the best point so far); 2 bad input."
 )]
 pub struct CalibrateArgs {
-    /// Plan: name of a built-in calibration, or a TOML file
-    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(|| Kind::Calibration.names()), hide_possible_values = true)]
-    plan: String,
+    /// Plan: name of a built-in calibration, or a TOML file; or one or more logs of a car
+    #[arg(value_name = "NAME|PLAN.toml|LOG", required = true, num_args = 1.., value_parser = Names(|| Kind::Calibration.names()), hide_possible_values = true)]
+    plan: Vec<String>,
+    /// Car of the logs, but for what they tell [default: none, without operating line and heat capacity]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
+    vehicle: Option<String>,
+    /// Override one value of this car; repeatable
+    #[arg(long, value_name = "KEY=VALUE", requires = "vehicle")]
+    set: Vec<String>,
+    #[command(flatten)]
+    columns: ColumnsArgs,
+    /// Ambient temperature of logs without that channel, degC, -40 to 60 [default: 25]
+    #[arg(long, value_name = "DEGC", allow_hyphen_values = true)]
+    ambient: Option<String>,
     #[command(flatten)]
     out: OutArgs,
     /// Number of starts of the search, 1 to 1000 [default: from the plan]
@@ -57,10 +76,82 @@ pub struct CalibrateArgs {
     output: OutputArgs,
 }
 
+/// A plan, or logs.
+pub enum Experiment {
+    Plan(Box<(CalibrationPlan, Option<OutputDir>)>),
+    Logs(Box<logs::LogsPlan>),
+}
+
+/// True if a word names a plan: a built-in calibration, or a TOML file.
+fn is_plan(word: &str) -> bool {
+    let toml = std::path::Path::new(word).extension();
+    toml.is_some_and(|toml| toml.eq_ignore_ascii_case("toml")) || !is_path(word)
+}
+
+impl CalibrateArgs {
+    fn logs(&self, problems: &mut Problems) -> Option<logs::LogsPlan> {
+        let columns = self.columns.get(problems);
+        let ambient = self.ambient.as_ref();
+        let ambient = ambient.map(|text| number("--ambient", text, AMBIENT, "ambient_degc"));
+        let ambient = problems.take(ambient.transpose());
+        let of_plans = [
+            ("--starts", self.starts.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--no-folds", self.no_folds),
+        ];
+        for (option, _) in of_plans.into_iter().filter(|(_, is)| *is) {
+            let hint = "a log is read without a search: leave it out";
+            problems.add(problem(option, "this is an option of plans", hint));
+        }
+        let options = Options {
+            set: overrides("--set", &self.set, problems),
+            ..Options::default()
+        };
+        let car = self.vehicle.as_deref().map(|word| (word, &options));
+        let question = logs::question(
+            &self.plan,
+            &columns,
+            car,
+            ambient?.unwrap_or(25.0),
+            problems,
+        );
+        let out = self.out.dir(problems);
+        question.map(|question| logs::LogsPlan { question, out })
+    }
+
+    /// Options of logs that a plan does not take.
+    fn only_logs(&self, problems: &mut Problems) {
+        let list = [
+            ("--vehicle", self.vehicle.is_some()),
+            ("--columns", self.columns.columns.is_some()),
+            ("--repair", self.columns.repair.is_some()),
+            ("--ambient", self.ambient.is_some()),
+        ];
+        for (option, _) in list.into_iter().filter(|(_, is)| *is) {
+            let hint = "a plan has it in its file: leave it out";
+            problems.add(problem(option, "this is an option of logs", hint));
+        }
+        if self.plan.len() > 1 {
+            let (all, hint) = (
+                self.plan.join(" "),
+                "logs are named alone, plans one by one",
+            );
+            let message = "a plan stands alone";
+            problems.add(bad_value("PLAN", &all, "one plan, or logs", message, hint));
+        }
+    }
+}
+
 impl Execute for CalibrateArgs {
-    type Plan = (CalibrationPlan, Option<OutputDir>);
+    type Plan = Experiment;
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        if !self.plan.iter().any(|word| is_plan(word)) {
+            return self
+                .logs(problems)
+                .map(|plan| Experiment::Logs(Box::new(plan)));
+        }
+        self.only_logs(problems);
         handle_interrupts();
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
@@ -69,17 +160,21 @@ impl Execute for CalibrateArgs {
         };
         let starts = count("--starts", &self.starts, 1..=MAX_STARTS);
         let seed = count("--seed", &self.seed, 0..=u64::MAX);
-        let plan = problems.take(open(&self.plan));
+        let plan = problems.take(open(&self.plan[0]));
         let out = self.out.dir(problems);
         let mut plan = plan?;
         let search = &mut plan.search;
         search.starts = starts.map_or(search.starts, |starts| starts as usize);
         search.seed = seed.unwrap_or(search.seed);
         plan.leave_out &= !self.no_folds;
-        Some((plan, out))
+        Some(Experiment::Plan(Box::new((plan, out))))
     }
 
-    fn run(&self, (plan, out): Self::Plan, terminal: Terminal) -> CommandResult {
+    fn run(&self, experiment: Self::Plan, terminal: Terminal) -> CommandResult {
+        let (plan, out) = match experiment {
+            Experiment::Logs(plan) => return logs::run(*plan, &self.output, terminal),
+            Experiment::Plan(both) => *both,
+        };
         let progress = Progress::evaluations(self.output.quiet);
         let outcome = calibrate(&plan, &progress);
         progress.finish();

@@ -5,6 +5,7 @@ use cvtcycle::analysis::levers::{COMBINE, Combine, Lever, LeverFile, LeverReques
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Bound, Problem, Problems};
+use cvtcycle::output::summary::start_on;
 use cvtcycle::study::Study;
 use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
 
@@ -124,13 +125,13 @@ impl LeversArgs {
             NVH_SPEED_RPM,
             "heard_rpm",
         ));
-        cycle?;
+        let start = start_on(&cycle?, start?);
         let request = LeverRequest {
             levers: levers?,
             vehicles: self.vehicle.clone(),
             ambients_degc: ambients?,
             cycle: self.cycle.word.clone(),
-            start: start?.1.text(),
+            start: start.1.text(),
             dt_s: dt_s?,
             engine_oil: self.engine_oil.clone(),
             draws: draws?,

@@ -16,7 +16,7 @@ use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
-use cvtcycle::output::summary::{SCHEMA, StartWord};
+use cvtcycle::output::summary::{SCHEMA, StartWord, start_on};
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};
@@ -174,9 +174,10 @@ impl Execute for OptimumArgs {
         let given = self.threads.given(problems);
         problems.take(threads::begin(given));
         let out = self.results.out.dir(problems);
-        let (numbers, start) = (numbers?, start?);
+        let numbers = numbers?;
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
         let cycle = cycle::for_car(&self.cycle.word, cycle?, &own);
+        let start = start_on(&cycle, start?);
         let others = elsewhere.into_iter();
         let others = others.map(|(word, other)| cycle::for_car(&word, other, &own));
         Some(OptimumPlan {

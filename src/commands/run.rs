@@ -15,7 +15,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{StartWord, name_run};
+use cvtcycle::output::summary::{StartWord, name_run, start_on};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
 use cvtcycle::validate::published;
@@ -146,6 +146,10 @@ impl Execute for RunArgs {
         let cars = self.cars.load(Baselines::OfFile, formulation, problems);
         let ambient = self.ambient.get(problems);
         let (start, dt_s) = drive.get(problems);
+        let start = start.map(|start| match &cars.cycle {
+            Some(cycle) => start_on(cycle, start),
+            None => start,
+        });
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
         let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
         let price = problems.take(when("--price", &self.price));

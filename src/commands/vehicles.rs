@@ -8,7 +8,7 @@ use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::output::summary::{Driven, Settings, StartWord};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, start_on};
 
 use super::threads::in_parallel;
 use crate::args::problems::{cite_override, overrides};
@@ -79,10 +79,11 @@ impl Loaded {
         start: Option<(Start, StartWord)>,
         dt_s: Option<f64>,
     ) -> Option<ComparedVehicles> {
+        let cycle = self.cycle?;
         Some(ComparedVehicles {
-            cycle: self.cycle?,
+            start: start_on(&cycle, start?),
+            cycle,
             vehicles: self.vehicles,
-            start: start?,
             dt_s: dt_s?,
             formulation: self.formulation,
         })

@@ -6,6 +6,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::Kind;
+use cvtcycle::output::summary::start_on;
 use cvtcycle::report::document::Document;
 use cvtcycle::report::whatif::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
@@ -70,7 +71,7 @@ impl Execute for WhatifArgs {
         let file = self.results.out.out.clone();
         let file = file.unwrap_or_else(|| PathBuf::from("whatif.html"));
         let target = problems.take(Target::new(&file, Form::Html, self.results.out.force));
-        cycle?;
+        let start = start_on(&cycle?, start?);
         let (subject, baselines) = cars.split_first()?;
         let scene = Scene {
             vehicle: car.vehicle,
@@ -78,7 +79,7 @@ impl Execute for WhatifArgs {
             set: car.set,
             set_all: self.comparison.set_all.clone(),
             engine_oil: self.comparison.engine_oil.clone(),
-            start: start?.1.text(),
+            start: start.1.text(),
             dt_s: dt_s?,
             formulation: formulation.name().to_owned(),
             state: State {

@@ -1,6 +1,7 @@
 //! The summary of a run with all that is said of it: maps that were left, prices of the losses, published numbers.
 
 use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::start_of_log;
 use cvtcycle_model::drive::{Conditions, Row, drive};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{
@@ -78,6 +79,10 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
         run.price = Some(attribute(&priced, run));
     }
     words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
+    if let Some((own, recorded)) = summary.recording.as_mut().zip(cycle.recording.as_deref()) {
+        let start = start_of_log(recorded).map(|start| StartWord::of_nodes(&start));
+        own.starts = start.is_some_and(|start| start == of.start);
+    }
     bounds(&mut summary, of, driven);
     compare_log(&mut summary, of, driven);
     summary
@@ -96,6 +101,49 @@ const QUANTITIES: [Quantity; 5] = [
     }),
     ("sump", "degC", 1.0, |row| row.sump_k - ZERO_DEGC_K),
 ];
+
+/// Means of a quantity of a log and of the computed one over stretches of a drive.
+struct Series {
+    stretch_s: f64,
+    /// Time, sums of time, log and computed car of each.
+    sums: Vec<[f64; 4]>,
+}
+
+impl Series {
+    /// Most stretches.
+    const MOST: f64 = 300.0;
+
+    fn new(duration_s: f64) -> Self {
+        Series {
+            stretch_s: (duration_s / Series::MOST).max(1.0),
+            sums: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, row: &Row, there: f64, here: f64) {
+        let middle_s = row.time_s - 0.5 * row.dt_s;
+        let at = (middle_s / self.stretch_s) as usize;
+        if self.sums.len() <= at {
+            self.sums.resize(at + 1, [0.0; 4]);
+        }
+        let own = [
+            row.dt_s,
+            row.dt_s * middle_s,
+            row.dt_s * there,
+            row.dt_s * here,
+        ];
+        for (sum, own) in self.sums[at].iter_mut().zip(own) {
+            *sum += own;
+        }
+    }
+
+    fn means(&self) -> Vec<[f64; 3]> {
+        let there = self.sums.iter().filter(|sum| sum[0] > 0.0);
+        there
+            .map(|sum| [1, 2, 3].map(|k| sum[k] / sum[0]))
+            .collect()
+    }
+}
 
 /// Engine speed, fuel and temperatures of a log next to those that are computed of the subject, step by step.
 fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
@@ -127,6 +175,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
             continue;
         };
         let [mut seconds, mut mean, mut computed, mut square] = [0.0; 4];
+        let mut series = Series::new(rows.last().map_or(0.0, |row| row.time_s));
         for row in rows {
             let Some(there) = measured.mean(row.time_s - row.dt_s, row.time_s) else {
                 continue;
@@ -136,6 +185,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
             mean += row.dt_s * there;
             computed += row.dt_s * here;
             square += row.dt_s * (here - there) * (here - there);
+            series.add(row, there, here);
         }
         if seconds > 0.0 {
             own.measured.push(MeasuredSummary {
@@ -145,6 +195,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
                 computed: computed / seconds,
                 rms: (square / seconds).sqrt(),
                 seconds,
+                series: series.means(),
             });
         }
     }
@@ -155,8 +206,8 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
 /// noise, and smoothed (tests/cli/commands/log.rs repeats it).
 const LEFT: [f64; 2] = [1.0, 0.5];
 
-/// How far rate, resolution and smoothing of a recording leave the results open (LO-6): the cars drive it with a quarter and four times the density of
-/// LO-3 too.
+/// How far rate, resolution and smoothing of a recording leave the results open (LG-6): the cars drive it with a quarter and four times the density of
+/// LG-3 too.
 fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let recorded = of.cycle.recording.as_deref();
     let Some((own, recorded)) = summary.recording.as_mut().zip(recorded) else {

@@ -8,6 +8,7 @@
 //! | `solve` | least squares, bounds, several starts, covariance, what the data do not identify; knows no physics |
 //! | `outcome` | everything that a calibration found |
 //! | `fitted` | vehicle and lubricant files with the fitted values |
+//! | `recorded` | what logs of a car tell of it: another kind of experiment, read directly and without a search |
 //!
 //! A residual is (computed - measured) / sd. What is computed comes from the sources and expressions of [`cvtcycle_validate`], so that a
 //! number is computed in the same way for a fit and for a verdict. A measured range has no residual within it.
@@ -18,6 +19,7 @@ pub mod fitted;
 pub mod model;
 pub mod outcome;
 pub mod plan;
+pub mod recorded;
 pub mod solve;
 
 pub use cvtcycle_config::embedded::calibrations as embedded_calibrations;

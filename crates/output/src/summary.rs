@@ -26,8 +26,8 @@ use super::record::{Manifest, Record, run_word};
 use crate::fleet_spread::FleetRange;
 use crate::number::{finite, plain};
 use cvtcycle_config::cycle::{Cycle, Repair};
-use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::Outcome;
+use cvtcycle_config::setup::{Setup, start_of_log};
+use cvtcycle_model::drive::{Outcome, Start};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
 
@@ -80,6 +80,9 @@ pub struct RecordingSummary {
     /// Other quantities of the log, with those that are computed of the subject.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<MeasuredSummary>,
+    /// True where the drive starts with the temperatures with which the log begins.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub starts: bool,
 }
 
 /// A quantity of a log and the computed one, over the time in which it was recorded.
@@ -97,6 +100,9 @@ pub struct MeasuredSummary {
     pub rms: f64,
     /// Time in which it was recorded, s.
     pub seconds: f64,
+    /// Means over up to 300 stretches of the drive: time at the middle, s, log, computed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub series: Vec<[f64; 3]>,
 }
 
 /// A repair of a recording.
@@ -139,6 +145,22 @@ pub enum StartWord {
     Degc(f64),
     /// Nodes at temperatures of their own by name, degC; the others follow (TH-10).
     Nodes(IndexMap<String, f64>),
+}
+
+/// The word of a start that follows the log.
+pub const AUTO: &str = "auto";
+
+/// A start as it is on a cycle: that of the word `auto` is with the temperatures with which a log begins, where it has them, else a soak.
+#[must_use]
+pub fn start_on(cycle: &Cycle, (start, word): (Start, StartWord)) -> (Start, StartWord) {
+    if word != StartWord::Word(AUTO.to_owned()) {
+        return (start, word);
+    }
+    let recording = cycle.recording.as_deref().filter(|own| own.is_log);
+    match recording.and_then(start_of_log) {
+        Some(nodes) => (Start::Nodes(nodes), StartWord::of_nodes(&nodes)),
+        None => (Start::Soak, StartWord::Word("soak".to_owned())),
+    }
 }
 
 impl StartWord {

@@ -17,7 +17,7 @@ use cvtcycle::output::History;
 use cvtcycle::output::escape::json_text;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, name_run};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, name_run, start_on};
 use cvtcycle::output::trace::columns_for;
 use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::report::report;
@@ -76,7 +76,7 @@ impl RunArguments {
 pub fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
     if let Ok(word) = given.extract::<String>() {
         let state = match word.as_str() {
-            "soak" => Start::Soak,
+            "auto" | "soak" => Start::Soak,
             "warm" => Start::Warm,
             nodes if nodes.contains('=') => {
                 let found = start_nodes(nodes).map_err(refused)?;
@@ -84,7 +84,7 @@ pub fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
             }
             _ => {
                 let allowed = format!(
-                    "soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
+                    "auto, soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
                     START.in_unit("degC")
                 );
                 return Err(bad("start", &word, &allowed, "this start is not known"));
@@ -152,6 +152,9 @@ pub fn run(
         return Err(bad("cars", "", "one car or more", "there is no car"));
     };
     let cycle = cycle.for_car(subject.get());
+    let mut arguments = arguments;
+    let start = (arguments.conditions.start, arguments.start);
+    (arguments.conditions.start, arguments.start) = start_on(&cycle, start);
     let steps = |car: &Py<Car>| {
         let is_cvt = car.get().setup.transmission().is_cvt();
         cycle.trace_for(is_cvt).step_count(dt_s)

@@ -94,6 +94,12 @@ pub fn write(
             files.push((file, svg(move || picture(plot))));
         }
     }
+    let recorded = summary.recording.as_ref().zip(driven.first());
+    let log = recorded
+        .and_then(|(own, car)| Some((charts::logged(own, car.name, &cycle.title)?, car.name)));
+    if let Some((picture, name)) = log {
+        files.push((format!("log_{name}.svg"), svg(|| picture)));
+    }
     files.push((
         "fuel_comparison.svg".to_owned(),
         svg(|| charts::fuel_bars(&plots)),

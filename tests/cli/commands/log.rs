@@ -6,30 +6,46 @@ use super::{run, stdout};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
+use std::process::Output;
 
 fn folder() -> String {
     format!("{}/tests/cli/logs", env!("CARGO_MANIFEST_DIR"))
 }
 
-fn path(file: &str) -> String {
+pub fn path(file: &str) -> String {
     format!("{}/{file}", folder())
 }
 
-fn drive(file: &str, more: &[&str]) -> std::process::Output {
-    let path = path(file);
-    let mut arguments = vec!["run", "--cycle", &path, "--price", "never", "--json"];
-    arguments.extend(more);
-    run(&arguments)
+/// A run of a cycle by its name or path, for its summary.
+pub fn run_of(cycle: &str, more: &[&str]) -> Output {
+    run(&[
+        &["run", "--cycle", cycle, "--price", "never", "--json"],
+        more,
+    ]
+    .concat())
 }
 
-fn summary(file: &str, more: &[&str]) -> Value {
-    let output = drive(file, more);
+/// The summary of such a run, which must not fail.
+pub fn summary_of(cycle: &str, more: &[&str]) -> Value {
+    let output = run_of(cycle, more);
     let problems = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{file} {more:?}: {problems}");
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{cycle} {more:?}: {problems}"
+    );
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn fuel(summary: &Value) -> f64 {
+fn drive(file: &str, more: &[&str]) -> Output {
+    run_of(&path(file), more)
+}
+
+fn summary(file: &str, more: &[&str]) -> Value {
+    summary_of(&path(file), more)
+}
+
+pub fn fuel(summary: &Value) -> f64 {
     summary["runs"][0]["fuel_l_per_100km"].as_f64().unwrap()
 }
 
@@ -191,17 +207,7 @@ fn faults_that_cannot_be_mended_in_one_way_are_refused_by_name() {
     let file = dir.path().join("even.csv");
     let even = fs::read_to_string(path("k10_gps_spike.csv")).unwrap();
     fs::write(&file, even.replace(",85\n", ",50\n")).unwrap();
-    let even = run(&[
-        "run",
-        "--cycle",
-        file.to_str().unwrap(),
-        "--baseline",
-        "none",
-        "--price",
-        "never",
-        "--json",
-    ]);
-    let even: Value = serde_json::from_slice(&even.stdout).unwrap();
+    let even = summary_of(file.to_str().unwrap(), &["--baseline", "none"]);
     assert!((spike - fuel(&even)).abs() < 1e-9, "{spike}");
 }
 
@@ -300,15 +306,7 @@ fn rate_and_resolution_leave_the_fuel_and_the_difference() {
     let file = dir.path().join("log.csv");
     let drive = |text: &str| -> Value {
         fs::write(&file, text).unwrap();
-        let output = run(&[
-            "run",
-            "--cycle",
-            file.to_str().unwrap(),
-            "--price",
-            "never",
-            "--json",
-        ]);
-        serde_json::from_slice(&output.stdout).unwrap()
+        summary_of(file.to_str().unwrap(), &[])
     };
     let both = |summary: &Value| {
         (
@@ -318,8 +316,7 @@ fn rate_and_resolution_leave_the_fuel_and_the_difference() {
     };
     for cycle in ["udds", "hwfet", "us06"] {
         let speeds = shipped(cycle);
-        let clean = run(&["run", "--cycle", cycle, "--price", "never", "--json"]);
-        let clean: Value = serde_json::from_slice(&clean.stdout).unwrap();
+        let clean = summary_of(cycle, &[]);
         let (fuel, percent) = both(&clean);
         for hertz in [10_usize, 4, 2, 1] {
             for (unit, quantum) in [
@@ -394,17 +391,7 @@ fn a_log_is_shown_and_written_as_the_cycle_that_it_is() {
         out.to_str().unwrap(),
     ]);
     assert_eq!(written.status.code(), Some(0));
-    let again = run(&[
-        "run",
-        "--cycle",
-        out.to_str().unwrap(),
-        "--baseline",
-        "none",
-        "--price",
-        "never",
-        "--json",
-    ]);
-    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    let again = summary_of(out.to_str().unwrap(), &["--baseline", "none"]);
     assert!((fuel(&again) - fuel(&alone("k02_ved_ms.csv", &[]))).abs() < 1e-9);
     let shown = run(&["log", &path("k09_udds_10hz_whole_kmh.csv"), "--json"]);
     let shown: Value = serde_json::from_slice(&shown.stdout).unwrap();
@@ -554,19 +541,7 @@ fn a_drive_in_many_written_forms_is_one_drive() {
     for (form, bytes) in forms {
         let file = dir.path().join("form.csv");
         fs::write(&file, bytes).unwrap();
-        let output = run(&[
-            "run",
-            "--cycle",
-            file.to_str().unwrap(),
-            "--baseline",
-            "none",
-            "--price",
-            "never",
-            "--json",
-        ]);
-        let problems = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{form}: {problems}");
-        let own = fuel(&serde_json::from_slice(&output.stdout).unwrap());
+        let own = fuel(&summary_of(file.to_str().unwrap(), &["--baseline", "none"]));
         assert!((own - right).abs() < 1e-6, "{form}: {own} for {right}");
     }
 }
@@ -623,17 +598,7 @@ fn engine_speed_and_fuel_of_a_log_are_compared_with_the_computed_ones() {
     }
     let file = dir.path().join("log.csv");
     fs::write(&file, text).unwrap();
-    let again = run(&[
-        "run",
-        "--cycle",
-        file.to_str().unwrap(),
-        "--baseline",
-        "none",
-        "--price",
-        "never",
-        "--json",
-    ]);
-    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    let again = summary_of(file.to_str().unwrap(), &["--baseline", "none"]);
     let measured = again["recording"]["measured"].as_array().unwrap();
     assert_eq!(
         measured.len(),

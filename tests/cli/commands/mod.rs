@@ -13,6 +13,8 @@ mod inputs;
 mod label;
 mod levers;
 mod log;
+mod log_car;
+mod log_table;
 mod named;
 mod new;
 mod run;

@@ -577,3 +577,54 @@ fn full_load_is_read_from_a_file() {
         }
     }
 }
+
+/// The Justy's map as a script in ADVISOR's form, its ratios times a final drive.
+fn justy_script(final_drive: f64) -> String {
+    let rows: Vec<Vec<f64>> = JUSTY
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let levels = |k: usize| {
+        let mut list: Vec<f64> = rows.iter().map(|row| row[k]).collect();
+        list.sort_by(f64::total_cmp);
+        list.dedup();
+        list
+    };
+    let [mut ratios, speeds, torques] = [0, 1, 2].map(levels);
+    ratios.reverse();
+    let list = |all: &[f64]| all.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let mut text = format!(
+        "% torque in columns, speed in rows\ngb_map_trq=[{}];\ngb_map_spd=[{}]*2*pi/60;\n",
+        list(&torques),
+        list(&speeds)
+    );
+    for (k, ratio) in ratios.iter().enumerate() {
+        let row = |speed: &f64| {
+            let at = |torque: &f64| {
+                let is = |row: &&Vec<f64>| [row[0], row[1], row[2]] == [*ratio, *speed, *torque];
+                rows.iter().find(is).unwrap()[3] / 100.0
+            };
+            list(&torques.iter().map(at).collect::<Vec<_>>())
+        };
+        let map: Vec<String> = speeds.iter().map(row).collect();
+        let _ = writeln!(text, "gb_map{}_eff_raw=[\n{}\n];", k + 1, map.join("\n"));
+    }
+    let _ = writeln!(text, "gb_ratio=[{}]*{final_drive};", list(&ratios));
+    text
+}
+
+/// Truth: the same cells as a list.
+#[test]
+fn a_box_script_of_advisor_is_the_list_of_its_cells() {
+    let fuel = |setup: &Setup| driven(setup).totals.total().fuel_kg;
+    let list = fuel(&whole_box("justy.csv", JUSTY, &[]).unwrap());
+    let script = fuel(&whole_box("justy.m", &justy_script(1.0), &[]).unwrap());
+    assert!((script / list - 1.0).abs() < 1e-9, "{script} {list}");
+    let with_drive = justy_script(5.83);
+    let refused = whole_box("justy.m", &with_drive, &[]).unwrap_err();
+    assert!(refused.contains("is a final drive in them?"), "{refused}");
+    let value = "{ value = \"justy.m\", columns = \"ratio=gb_ratio/5.83\" }";
+    let divided = fuel(&car("justy.m", &with_drive, BOX, value, &[NO_LOAD]).unwrap());
+    assert!((divided / list - 1.0).abs() < 1e-9, "{divided} {list}");
+}

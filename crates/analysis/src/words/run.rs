@@ -242,9 +242,14 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         over.unit()
     );
     let measured = recording.and_then(compared_log);
+    let starts = recording
+        .filter(|own| own.starts)
+        .and_then(|_| summary.start.nodes_in_words())
+        .map(|nodes| format!("The drive starts as the log does: {nodes}."));
     let lines = [
         Some(first),
         recording.and_then(repaired),
+        starts,
         measured,
         price(run),
     ]

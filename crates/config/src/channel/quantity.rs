@@ -383,7 +383,13 @@ impl Quantity {
         if has(&["altitude", "elevation", "alt", "ele", "elev"]) {
             return Some(Quantity::Altitude);
         }
-        if has(&["fuel"]) && has(&["rate", "flow", "consumption", "h", "lph", "gps", "gph"]) {
+        let is_flow = || {
+            bare.strip_prefix("fuel_")
+                .is_some_and(|unit| Quantity::Fuel.unit(unit).is_some())
+        };
+        if has(&["fuel"])
+            && (has(&["rate", "flow", "consumption", "h", "lph", "gps", "gph"]) || is_flow())
+        {
             return Some(Quantity::Fuel);
         }
         if has(&["rpm", "cranking"]) && !has(SPEED_OF_BOX)

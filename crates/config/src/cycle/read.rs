@@ -166,14 +166,14 @@ fn alike(problems: Problems) -> Problems {
     joined.chain(not_shown).collect()
 }
 
-/// Other channels of the car that a log has, over the cycle's time.
+/// Other channels of the car, and the air's temperature, that a log has, over the cycle's time.
 fn measured(log: &Log) -> Vec<Measured> {
     let samples = &log.treated.samples;
     let is_of_car = |channel: &&Channel| {
-        use Quantity::{Coolant, EngineOil, EngineSpeed, Fuel, Sump};
+        use Quantity::{Ambient, Coolant, EngineOil, EngineSpeed, Fuel, Sump};
         matches!(
             channel.quantity,
-            EngineSpeed | Fuel | Coolant | EngineOil | Sump
+            EngineSpeed | Fuel | Coolant | EngineOil | Sump | Ambient
         ) && channel.values.len() == samples.time_s.len()
             && channel.values.iter().any(|value| value.is_finite())
     };

@@ -1,6 +1,6 @@
 //! Doubts about a recording: motions that no car has; likeness to drives that the caller knows.
 
-use super::repair::Samples;
+use super::samples::Samples;
 use crate::readable;
 
 /// No road car gains speed as fast over a second, m/s2.

@@ -17,9 +17,10 @@ fn entry(text: &str) -> String {
     }
 }
 
-/// `time=NAME:UNIT,speed=NAME:UNIT`, with other channels and the rows that are meant.
+/// `time=NAME:UNIT,speed=NAME:UNIT`, with the other channels that are known and the rows that are meant.
 pub(super) fn columns(
     sheet: &Sheet<'_>,
+    chosen: &Chosen,
     (time, speed): (&Source, &Source),
     more: &[(Quantity, usize, &str)],
     filters: &[(String, String)],
@@ -53,24 +54,53 @@ pub(super) fn columns(
         })
     };
     if sheet.names.is_empty() {
-        return in_order(sheet, time, speed);
+        return in_order(time, speed);
     }
-    let more = more.iter().map(|(quantity, column, unit)| {
-        entry(&format!("{}={}:{unit}", quantity.name(), name(*column)))
-    });
+    let mut named: Vec<Quantity> = vec![Quantity::Time, Quantity::Speed];
+    let mut others = Vec::new();
+    let plain = chosen.no_unit.iter();
+    let plain =
+        plain.filter_map(|(quantity, column)| Some((*quantity, *column, usual(*quantity)?)));
+    for (quantity, column, unit) in more.iter().copied().chain(plain) {
+        if !named.contains(&quantity) {
+            named.push(quantity);
+            others.push(entry(&format!(
+                "{}={}:{unit}",
+                quantity.name(),
+                name(column)
+            )));
+        }
+    }
+    for source in &chosen.others {
+        if !named.contains(&source.quantity) {
+            named.push(source.quantity);
+            others.push(of(source));
+        }
+    }
     let filters = filters
         .iter()
         .map(|(name, value)| entry(&format!("where={name}:{value}")));
     let list: Vec<String> = [of(time), of(speed)]
         .into_iter()
-        .chain(more)
+        .chain(others)
         .chain(filters)
         .collect();
     list.join(",")
 }
 
+/// Unit in which nearly all logs have a quantity; none where there are several.
+fn usual(quantity: Quantity) -> Option<&'static str> {
+    match quantity {
+        Quantity::EngineSpeed => Some("rpm"),
+        Quantity::Coolant | Quantity::EngineOil | Quantity::Sump | Quantity::Ambient => {
+            Some("degC")
+        }
+        _ => None,
+    }
+}
+
 /// The columns of a file without names.
-fn in_order(_: &Sheet<'_>, time: &Source, speed: &Source) -> String {
+fn in_order(time: &Source, speed: &Source) -> String {
     let unit = |source: &Source| match source.reading {
         Reading::Number(unit) => unit.name,
         _ => "s",
@@ -158,10 +188,57 @@ fn speed_unit(pairs: &[(f64, f64)]) -> (&'static str, String) {
     (found.map_or("km/h", |(name, _)| name), hint)
 }
 
+/// True if a word of a name is `time` but for a letter.
+fn is_like_time(name: &str) -> bool {
+    let bare = crate::channel::bare(name);
+    bare.split('_')
+        .any(|word| word.len() > 2 && strsim::levenshtein(word, "time") == 1)
+}
+
 /// Proposed columns, and a hint about the unit of the speed.
 pub(super) struct Guess {
     pub columns: String,
     pub hint: String,
+}
+
+/// The column that is named as a time and rises like one, and the first that rises.
+fn time_columns(
+    sheet: &Sheet<'_>,
+    chosen: &Chosen,
+    speed_column: Option<usize>,
+) -> (Option<usize>, Option<usize>) {
+    let rises = |column: &usize| {
+        let values = raw(sheet, *column);
+        values.len() > 2
+            && values.windows(2).all(|pair| pair[1] >= pair[0])
+            && values.last() > values.first()
+    };
+    let times = chosen.no_unit.iter();
+    let named = times
+        .filter(|(own, _)| *own == Quantity::Time)
+        .map(|(_, column)| *column)
+        .next();
+    // A port counts many times: of those that are named the one that rises is meant.
+    let all = || (0..sheet.width).filter(|column| Some(*column) != speed_column && rises(column));
+    let is_named = |column: &usize| chosen.no_unit.contains(&(Quantity::Time, *column));
+    let changes = |column: &usize| {
+        let values = raw(sheet, *column);
+        values.windows(2).filter(|pair| pair[1] > pair[0]).count()
+    };
+    let most = all().map(|column| changes(&column)).max().unwrap_or(0);
+    // Minutes since an event rise, too, but a tenth as often.
+    let is_fine = |column: &usize| 10 * changes(column) >= most;
+    let is_misspelt = |column: &usize| {
+        sheet
+            .names
+            .get(*column)
+            .is_some_and(|name| is_like_time(name))
+    };
+    let named_time = all().find(|column| is_named(column) && is_fine(column));
+    let named_time = named_time.or_else(|| all().find(is_misspelt));
+    let named_time = named_time.or_else(|| all().find(is_named));
+    let named_time = named_time.or_else(|| named.filter(|_| all().next().is_none()));
+    (named_time, all().next())
 }
 
 /// Columns for a file whose names do not say all: by the names that mean something, by a column that never falls, by the units that fit a car.
@@ -179,12 +256,6 @@ pub(super) fn guess(
             .find(|(own, _)| *own == quantity)
             .map(|(_, column)| *column)
     };
-    let rises = |column: &usize| {
-        let values = raw(sheet, *column);
-        values.len() > 2
-            && values.windows(2).all(|pair| pair[1] >= pair[0])
-            && values.last() > values.first()
-    };
     let stamps = |column: &usize| {
         sheet
             .sample
@@ -197,13 +268,12 @@ pub(super) fn guess(
         .first()
         .map(|source| source.column)
         .or_else(|| named(Quantity::Speed));
-    let time = match (chosen.times.first(), named(Quantity::Time)) {
+    let (named_time, rising) = time_columns(sheet, chosen, speed_column);
+    let time = match (chosen.times.first(), named_time) {
         (Some(time), _) => time.clone(),
         (None, named) => {
-            let rising =
-                || (0..sheet.width).find(|column| Some(*column) != speed_column && rises(column));
             let stamped = || (0..sheet.width).find(|column| stamps(column).is_some());
-            let column = named.or_else(stamped).or_else(rising)?;
+            let column = named.or_else(stamped).or(rising)?;
             let reading = match stamps(&column).filter(|_| !is_number(&column)) {
                 Some(form) => Reading::Stamp(form),
                 None => Reading::Number(Quantity::Time.unit(time_unit(&raw(sheet, column)))?),
@@ -258,6 +328,6 @@ pub(super) fn guess(
             }
         }
     };
-    let columns = columns(sheet, (&time, &speed), &[], filters);
+    let columns = columns(sheet, chosen, (&time, &speed), &[], filters);
     Some(Guess { columns, hint })
 }

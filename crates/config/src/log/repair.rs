@@ -1,5 +1,6 @@
 //! Faults of recordings that have one remedy: each has a name, is counted, and can be switched off.
 
+use super::samples::Samples;
 use super::smooth::{Resolution, smoothed};
 use crate::channel::Repairs;
 use crate::{Problem, Setting, readable};
@@ -9,10 +10,6 @@ use cvtcycle_model::cycle::Repair;
 const MOVING_M_S: f64 = 0.5;
 /// Speeds down to here are those of a sensor at rest, m/s (1 km/h).
 const MIN_SPEED_M_S: f64 = -1.0 / 3.6;
-/// No road car gains speed faster; one that also loses it as fast is a lost sample, m/s2.
-const SPIKE_M_S2: f64 = 4.0;
-/// Longest spike, samples and s.
-const SPIKE: (usize, f64) = (3, 3.0);
 /// A step of a recording is a gap from here on, s, and in steps.
 const GAP: (f64, f64) = (10.0, 10.0);
 /// Tyres cannot do more, m/s2.
@@ -23,17 +20,8 @@ const FAST_M_S: f64 = 0.5;
 /// Most gaps and jumps that are bridged, and one of so many rows.
 const CUTS: usize = 5;
 const CUTS_PER_ROW: usize = 200;
-/// Rows of a recording at least, and the share of its steps that are not longer than so many medians.
-const RECORDING: (usize, f64) = (20, 0.9);
-const ALIKE: f64 = 3.0;
-/// Speeds of one stamp that differ by less have a mean, m/s.
-const SAME_M_S: f64 = 1.5;
 /// Acceleration with which a cut is bridged, as in a cycle over distance (CY-1), m/s2: up and down.
 const BRIDGE_M_S2: [f64; 2] = [1.0, 1.5];
-/// Length of road on either side over which a slope is taken from heights, m.
-const SLOPE_M: f64 = 100.0;
-/// Steepest slope, rise over run.
-const STEEPEST: f64 = 0.35;
 
 /// A repair that was made.
 pub(super) fn made(name: &'static str, count: usize, what: String) -> Repair {
@@ -42,15 +30,6 @@ pub(super) fn made(name: &'static str, count: usize, what: String) -> Repair {
         count,
         what,
     }
-}
-
-/// A recording: times that rise, and speeds.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Samples {
-    pub time_s: Vec<f64>,
-    pub speed_m_s: Vec<f64>,
-    /// Line of each row.
-    pub lines: Vec<u32>,
 }
 
 /// A recording after its repairs.
@@ -68,149 +47,6 @@ pub(crate) struct Treated {
 
 fn kmh(speed_m_s: f64) -> String {
     readable(3.6 * speed_m_s, 1)
-}
-
-impl Samples {
-    fn step(&self, k: usize) -> f64 {
-        self.time_s[k + 1] - self.time_s[k]
-    }
-
-    fn accel(&self, k: usize) -> f64 {
-        (self.speed_m_s[k + 1] - self.speed_m_s[k]) / self.step(k)
-    }
-
-    /// Median step where most steps are alike: the rows are those of a recording, not the corners of a schedule.
-    fn raster(&self) -> Option<f64> {
-        let steps: Vec<f64> = self
-            .time_s
-            .windows(2)
-            .map(|pair| pair[1] - pair[0])
-            .collect();
-        let step = super::smooth::median(steps.clone())?;
-        let alike = steps.iter().filter(|own| **own <= ALIKE * step).count();
-        (self.time_s.len() >= RECORDING.0 && alike as f64 >= RECORDING.1 * steps.len() as f64)
-            .then_some(step)
-    }
-
-    /// Puts the rows in the order of their times. Returns how many stood behind a later one.
-    pub(super) fn sort(&mut self, others: &mut [Vec<f64>]) -> usize {
-        let mut order: Vec<usize> = (0..self.time_s.len()).collect();
-        let moved = self
-            .time_s
-            .windows(2)
-            .filter(|pair| pair[1] < pair[0])
-            .count();
-        order.sort_by(|a, b| self.time_s[*a].total_cmp(&self.time_s[*b]));
-        let pick = |list: &Vec<f64>| order.iter().map(|k| list[*k]).collect();
-        (self.time_s, self.speed_m_s) = (pick(&self.time_s), pick(&self.speed_m_s));
-        self.lines = order.iter().map(|k| self.lines[*k]).collect();
-        for other in others {
-            *other = pick(other);
-        }
-        moved
-    }
-
-    /// Rows of one stamp become one with the mean of their speeds. Returns the number of rows that are gone.
-    ///
-    /// # Errors
-    /// One stamp has speeds too different for a mean: the index of its second row.
-    pub(super) fn merge(&mut self, others: &mut [Vec<f64>]) -> Result<usize, usize> {
-        let n = self.time_s.len();
-        let (mut to, mut k) = (0, 0);
-        while k < n {
-            let mut end = k + 1;
-            while end < n && self.time_s[end] <= self.time_s[k] {
-                end += 1;
-            }
-            let own = &self.speed_m_s[k..end];
-            let (low, high) = own
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                    (low.min(*v), high.max(*v))
-                });
-            // Rows of a second may differ by what a car gains in it.
-            let next_s = self
-                .time_s
-                .get(end)
-                .map_or(1.0, |next| next - self.time_s[k]);
-            if high - low > SAME_M_S + SPIKE_M_S2 * next_s.min(2.0) {
-                return Err(k + 1);
-            }
-            let mean = own.iter().sum::<f64>() / own.len() as f64;
-            (self.time_s[to], self.speed_m_s[to], self.lines[to]) =
-                (self.time_s[k], mean, self.lines[k]);
-            for other in &mut *others {
-                other[to] = other[k];
-            }
-            (to, k) = (to + 1, end);
-        }
-        self.time_s.truncate(to);
-        self.speed_m_s.truncate(to);
-        self.lines.truncate(to);
-        others.iter_mut().for_each(|other| other.truncate(to));
-        Ok(n - to)
-    }
-
-    /// Puts the mean of each second in place of its rows, at their mean time; a second with a rest and a drive keeps its mean. Returns the number of rows
-    /// before.
-    pub(super) fn mean_each_second(&mut self, others: &mut [Vec<f64>]) -> usize {
-        let n = self.time_s.len();
-        let first_s = self.time_s[0];
-        let (mut to, mut k) = (0, 0);
-        while k < n {
-            let second = (self.time_s[k] - first_s).floor();
-            let end = (k..n)
-                .find(|at| (self.time_s[*at] - first_s).floor() > second)
-                .unwrap_or(n);
-            let mean = |list: &[f64]| list[k..end].iter().sum::<f64>() / (end - k) as f64;
-            let (time, speed) = (mean(&self.time_s), mean(&self.speed_m_s));
-            (self.time_s[to], self.speed_m_s[to], self.lines[to]) = (time, speed, self.lines[k]);
-            for other in &mut *others {
-                other[to] = other[k];
-            }
-            (to, k) = (to + 1, end);
-        }
-        self.time_s.truncate(to);
-        self.speed_m_s.truncate(to);
-        self.lines.truncate(to);
-        others.iter_mut().for_each(|other| other.truncate(to));
-        n
-    }
-
-    /// Replaces samples against both neighbours by the line between these; returns their indices.
-    fn spikes(&mut self) -> Vec<(usize, f64)> {
-        let n = self.time_s.len();
-        let mut found = Vec::new();
-        let mut k = 0;
-        while k + 2 < n {
-            let first = self.accel(k);
-            let least = |k: usize| SPIKE_M_S2.max(1.0 / self.step(k).max(0.05));
-            let width = (1..=SPIKE.0).find(|width| {
-                let end = k + width;
-                end + 1 < n
-                    && self.time_s[end + 1] - self.time_s[k] <= SPIKE.1 + 1.0
-                    && first.abs() > least(k)
-                    && self.accel(end).abs() > least(end)
-                    && first * self.accel(end) < 0.0
-                    // Within it the speed stays: it does not come back by itself.
-                    && (k + 1..end).all(|k| self.accel(k).abs() < SPIKE_M_S2)
-                    && (self.speed_m_s[end + 1] - self.speed_m_s[k]).abs() < 0.3 * (self.speed_m_s[k + 1] - self.speed_m_s[k]).abs()
-            });
-            let Some(width) = width else {
-                k += 1;
-                continue;
-            };
-            let end = k + width + 1;
-            let slope =
-                (self.speed_m_s[end] - self.speed_m_s[k]) / (self.time_s[end] - self.time_s[k]);
-            for at in k + 1..end {
-                found.push((at, self.speed_m_s[at]));
-                self.speed_m_s[at] = self.speed_m_s[k] + slope * (self.time_s[at] - self.time_s[k]);
-            }
-            k = end;
-        }
-        found
-    }
 }
 
 /// A recording, what was done to it so far, and what was found.
@@ -382,7 +218,7 @@ impl Treatment<'_> {
         let with = |factor| smoothed(time_s, speed_m_s, coarse.error_m_s, factor);
         self.bounds = vec![with(0.25), with(4.0)];
         self.samples.speed_m_s = with(1.0);
-        let what = format!("{words}; smoothed (LO-3)");
+        let what = format!("{words}; smoothed (LG-3)");
         let count = self.samples.time_s.len();
         self.repairs.push(made("smooth", count, what));
     }
@@ -507,70 +343,4 @@ pub(super) fn number_of(count: usize, noun: &str) -> String {
         1 => format!("1 {noun}"),
         _ => format!("{count} {noun}s"),
     }
-}
-
-/// Slopes from heights: the line of least squares through the heights within 100 m of road on either side, of which each metre counts once. Returns
-/// slopes, and how many rows were above the steepest road and are set to it.
-pub(super) fn slopes(samples: &Samples, altitude_m: &[f64]) -> (Vec<f64>, usize) {
-    /// Mean height of a metre of road.
-    struct Point {
-        road_m: f64,
-        sum_m: f64,
-        count: f64,
-    }
-    let mut points: Vec<Point> = Vec::new();
-    let mut point_of = Vec::with_capacity(altitude_m.len());
-    let mut road_m = 0.0;
-    for (k, height) in altitude_m.iter().enumerate() {
-        if k > 0 {
-            road_m += 0.5 * (samples.speed_m_s[k] + samples.speed_m_s[k - 1]) * samples.step(k - 1);
-        }
-        if height.is_finite() {
-            match points.last_mut().filter(|last| road_m - last.road_m < 1.0) {
-                Some(last) => (last.sum_m, last.count) = (last.sum_m + height, last.count + 1.0),
-                None => points.push(Point {
-                    road_m,
-                    sum_m: *height,
-                    count: 1.0,
-                }),
-            }
-        }
-        point_of.push(points.len().saturating_sub(1));
-    }
-    let (mut low, mut high) = (0, 0);
-    let mut of_points: Vec<f64> = Vec::with_capacity(points.len());
-    for own in &points {
-        while high < points.len() && points[high].road_m <= own.road_m + SLOPE_M {
-            high += 1;
-        }
-        while points[low].road_m < own.road_m - SLOPE_M {
-            low += 1;
-        }
-        let window = &points[low..high];
-        let mean =
-            |of: &dyn Fn(&Point) -> f64| window.iter().map(of).sum::<f64>() / window.len() as f64;
-        let (x, y) = (
-            mean(&|p| p.road_m - own.road_m),
-            mean(&|p| p.sum_m / p.count),
-        );
-        let xx = mean(&|p| (p.road_m - own.road_m - x).powi(2));
-        let xy = mean(&|p| (p.road_m - own.road_m - x) * (p.sum_m / p.count - y));
-        // Less than some metres of road have no slope of their own.
-        of_points.push(match window.len() >= 3 && xx > 25.0 {
-            true => xy / xx,
-            false => of_points.last().copied().unwrap_or(0.0),
-        });
-    }
-    let slope = |point: &usize| of_points.get(*point).copied().unwrap_or(0.0);
-    let steep = point_of
-        .iter()
-        .filter(|point| slope(point).abs() > STEEPEST)
-        .count();
-    (
-        point_of
-            .iter()
-            .map(|point| slope(point).clamp(-STEEPEST, STEEPEST))
-            .collect(),
-        steep,
-    )
 }

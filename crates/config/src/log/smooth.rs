@@ -2,18 +2,18 @@
 //!
 //! | label | equation | validity, source |
 //! |---|---|---|
-//! | LO-1 | a_res = q / dt with the smallest difference q of two speeds that occur and the median step dt | acceleration resolution, as in the trip dynamics of real driving emissions, (EU) 2017/1151, Annex IIIA |
-//! | LO-2 | s2 = max(q2/12, (m2 - q_a dt3)/20) with m = median abs(third difference) / 0.6745, the second term for steps up to 0.5 s | variance of an error that is even over q; the third difference of white noise has 20 s2, that of LO-3's motion q_a dt3 |
-//! | LO-3 | v minimises sum (y - v)2 / s2 + 1/q_a integral (dv2/dt2)2 dt, q_a = (0.5 m/s2)2/s | mean of a car whose acceleration is a random walk; the rms change of acceleration over 1 s in shipped cycles is 0.11 (HWFET) to 0.62 m/s2 (Artemis urban) |
-//! | LO-4 | smoothed where sqrt(2 s2)/dt > 0.1 m/s2 | accelerations below: 1.5 % of 7 m/s2 at full load; a table in 0.1 mph at 1 Hz has 0.02, whole km/h at 1 Hz 0.11, at 10 Hz 1.1 |
+//! | LG-1 | a_res = q / dt with the smallest difference q of two speeds that occur and the median step dt | acceleration resolution, as in the trip dynamics of real driving emissions, (EU) 2017/1151, Annex IIIA |
+//! | LG-2 | s2 = max(q2/12, (m2 - q_a dt3)/20) with m = median abs(third difference) / 0.6745, the second term for steps up to 0.5 s | variance of an error that is even over q; the third difference of white noise has 20 s2, that of LG-3's motion q_a dt3 |
+//! | LG-3 | v minimises sum (y - v)2 / s2 + 1/q_a integral (dv2/dt2)2 dt, q_a = (0.5 m/s2)2/s | mean of a car whose acceleration is a random walk; the rms change of acceleration over 1 s in shipped cycles is 0.11 (HWFET) to 0.62 m/s2 (Artemis urban) |
+//! | LG-4 | smoothed where sqrt(2 s2)/dt > 0.1 m/s2 | accelerations below: 1.5 % of 7 m/s2 at full load; a table in 0.1 mph at 1 Hz has 0.02, whole km/h at 1 Hz 0.11, at 10 Hz 1.1 |
 //!
 //! The regulation smooths by T4253H with Hanning weights. Medians keep the steps of a coarse resolution at a high rate, and at 1 Hz they take away
-//! accelerations that are there. With LO-3 fuel stays within 1 % and the difference to the manual car within 0.5 points on UDDS, HWFET and US06 at 10, 4, 2
+//! accelerations that are there. With LG-3 fuel stays within 1 % and the difference to the manual car within 0.5 points on UDDS, HWFET and US06 at 10, 4, 2
 //! and 1 Hz (tests/cli/commands/log.rs).
 
-/// Density of the change of acceleration (LO-3), (m/s2)2/s.
+/// Density of the change of acceleration (LG-3), (m/s2)2/s.
 const CHANGE: f64 = 0.25;
-/// Error of an acceleration beyond which speeds are smoothed (LO-4), m/s2.
+/// Error of an acceleration beyond which speeds are smoothed (LG-4), m/s2.
 const MAX_ERROR_M_S2: f64 = 0.1;
 /// Values of a table with a coarser resolution are corners, and no recording.
 const MAX_RESOLUTION_M_S: f64 = 0.6;
@@ -31,12 +31,12 @@ pub struct Resolution {
     pub step_s: f64,
     /// Smallest difference of two speeds, m/s.
     pub speed_m_s: f64,
-    /// Standard deviation of the error of a speed (LO-2), m/s.
+    /// Standard deviation of the error of a speed (LG-2), m/s.
     pub error_m_s: f64,
 }
 
 impl Resolution {
-    /// Acceleration resolution (LO-1), m/s2.
+    /// Acceleration resolution (LG-1), m/s2.
     #[must_use]
     pub fn accel_m_s2(&self) -> f64 {
         self.speed_m_s / self.step_s
@@ -48,7 +48,7 @@ impl Resolution {
         self.speed_m_s * self.speed_m_s / 12.0 > 0.5 * self.error_m_s * self.error_m_s
     }
 
-    /// True where differences of speeds are noise (LO-4).
+    /// True where differences of speeds are noise (LG-4).
     #[must_use]
     pub fn is_coarse(&self) -> bool {
         std::f64::consts::SQRT_2 * self.error_m_s / self.step_s > MAX_ERROR_M_S2
@@ -96,7 +96,7 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(*median)
 }
 
-/// Smooths speeds (LO-3), with `factor` times the density of the change of acceleration. Speeds of 0 stay 0.
+/// Smooths speeds (LG-3), with `factor` times the density of the change of acceleration. Speeds of 0 stay 0.
 ///
 /// A cubic smoothing spline by Reinsch's algorithm, five diagonals of n - 2 unknowns: written here because the crates for it bring sparse matrices of
 /// another linear algebra.
@@ -169,7 +169,7 @@ pub(super) fn smoothed(time_s: &[f64], speed_m_s: &[f64], error_m_s: f64, factor
 mod tests {
     use super::*;
 
-    /// Truth: the minimum of LO-3 of a straight line is itself; and its gradient is 0, by differences of the function.
+    /// Truth: the minimum of LG-3 of a straight line is itself; and its gradient is 0, by differences of the function.
     #[test]
     fn a_line_stays_and_the_sum_is_least() {
         let time: Vec<f64> = (0..40)

@@ -1,5 +1,6 @@
 //! Tables that vehicle files name: BSFC and loss maps.
 
+mod box_script;
 mod fuel;
 mod grid;
 mod row;

@@ -16,7 +16,7 @@ mod start;
 mod twin;
 
 pub use self::params::{Param, ParamSet, ParamValue};
-pub use self::start::{start_nodes, start_of_nodes};
+pub use self::start::{start_nodes, start_of_log, start_of_nodes};
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
 };

@@ -1,10 +1,14 @@
 //! Temperatures of single nodes at the start, as a user writes them: `coolant=81,sump=60`.
 
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
-use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
+use cvtcycle_model::thermal::{COOLANT, START_NODES, StartTemperatures};
 
 use super::START;
-use crate::{Problem, did_you_mean};
+use crate::{Bound, Problem, did_you_mean};
+use cvtcycle_model::cycle::Recording;
+
+/// Temperatures of a log's first rows that are taken: -40 degC is what a port gives for none.
+const LOGGED: Bound = Bound::closed(-39.0, 129.0);
 
 /// Parses temperatures of nodes in degC, `NODE=DEGC` with commas between (TH-10).
 ///
@@ -28,6 +32,22 @@ pub fn start_of_nodes(list: &[(String, f64)]) -> Result<StartTemperatures, Probl
     let text: Vec<String> = list.iter().map(|(name, x)| format!("{name}={x}")).collect();
     let parts = list.iter().map(|(name, degc)| (name.as_str(), Ok(*degc)));
     nodes(&text.join(","), parts)
+}
+
+/// The temperatures with which a log begins, of the nodes that it has channels of; none without the coolant's, as an oil may be the engine's or the box's. A value out of the range of a start is that of a missing
+/// sensor, and is passed over.
+#[must_use]
+pub fn start_of_log(recording: &Recording) -> Option<StartTemperatures> {
+    // No sensor is finer than 0.1 K.
+    let first = |name: &str| {
+        recording
+            .first(name)
+            .map(|degc| (10.0 * degc).round() / 10.0)
+    };
+    let of = |name: &str| first(name).filter(|degc| LOGGED.contains(*degc));
+    let given_k = START_NODES.map(|name| of(name).map(|degc| degc + ZERO_DEGC_K));
+    let start = StartTemperatures { given_k };
+    start.given_k[COOLANT].is_some().then_some(start)
 }
 
 fn nodes<'a>(

@@ -69,7 +69,7 @@ pub struct Recording {
 /// A quantity of a car that was recorded with its speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Name of the quantity: `engine_speed` in rad/s, `fuel` in kg/s, `coolant`, `engine_oil` and `sump` in degC.
+    /// Name of the quantity: `engine_speed` in rad/s, `fuel` in kg/s, `coolant`, `engine_oil`, `sump` and `ambient` in degC.
     pub quantity: String,
     /// Times, s from the start of the cycle.
     pub time_s: Vec<f64>,
@@ -98,6 +98,19 @@ impl Measured {
             (0.5 * (from_s + to_s) - self.time_s[low]) / (self.time_s[high] - self.time_s[low]);
         let value = before + share * (behind - before);
         value.is_finite().then_some(value)
+    }
+}
+
+impl Recording {
+    /// Time within which a channel begins, s.
+    const BEGIN_S: f64 = 30.0;
+
+    /// First value of a quantity, in the first half minute.
+    #[must_use]
+    pub fn first(&self, quantity: &str) -> Option<f64> {
+        let own = self.measured.iter().find(|own| own.quantity == quantity)?;
+        let at = own.values.iter().position(|value| value.is_finite())?;
+        (own.time_s[at] <= Recording::BEGIN_S).then_some(own.values[at])
     }
 }
 

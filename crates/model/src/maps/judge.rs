@@ -1,4 +1,4 @@
-//! What physics says of the points of a fuel map: which of them no engine has, and which are likely slips. Points above full load are not judged: makers
+//! Judgement of the points of a fuel map by physics: which of them no engine has, and which are likely slips. Points above full load are not judged: makers
 //! of maps fill their grids there with any number.
 
 use super::{BsfcMap, NoMap, Point};

@@ -19,7 +19,7 @@ pub use set::{FileSet, FileWriter};
 pub use sum::{Sum, Summing, Sums, hex, sha256, sum_of};
 
 /// Files that identify a directory as one of an earlier run or calibration.
-const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
+const MARKS: [&str; 3] = ["summary.json", "calibration.json", "findings.json"];
 /// File that identifies a directory as one of a study.
 const STUDY: &str = "study.json";
 /// Prefix and suffix of the names of incomplete files.

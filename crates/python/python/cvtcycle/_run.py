@@ -159,7 +159,7 @@ def run(
     cycle: Cycle | str | os.PathLike[str],
     *,
     ambient_degc: float = 25.0,
-    start: str | float | Mapping[str, float] = "soak",
+    start: str | float | Mapping[str, float] = "auto",
     dt_s: float = 1.0,
     baselines: Iterable[Car | str | os.PathLike[str]] = (),
     trace: bool = True,
@@ -167,8 +167,8 @@ def run(
 ) -> Run:
     """Drives a car and its baselines through a cycle.
 
-    ``start`` is ``soak`` (everything at ambient), ``warm`` (directly after the same cycle from a soak), a temperature in degC, or those of
-    single nodes, ``{"coolant": 81, "sump": 60}`` or ``"coolant=81,sump=60"``: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10).
+    ``start`` is ``auto`` (as a log begins that has temperatures, else ``soak``), ``soak`` (everything at ambient), ``warm`` (directly after the
+    same cycle from a soak), a temperature in degC, or those of single nodes, ``{"coolant": 81, "sump": 60}`` or ``"coolant=81,sump=60"``: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10).
     ``dt_s`` is the longest time step. ``baselines`` are cars, names or paths, and ``twin`` for the same car with a manual box. Without ``trace`` no
     steps are kept, which is faster. With ``price`` each car is driven again without each of its losses, for the fuel that it costs.
     """

@@ -31,7 +31,7 @@ pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use price::price_bars;
 pub use run::{
-    LossBins, PlotRun, PublishedDrive, bin_losses, driveline, fuel_bars, group_fuel, losses,
-    operating_points, pressure, published_drive, temperatures,
+    LossBins, PlotRun, PublishedDrive, bin_losses, driveline, fuel_bars, group_fuel, logged,
+    losses, operating_points, pressure, published_drive, temperatures,
 };
 pub use variator_curves::variator_figures;

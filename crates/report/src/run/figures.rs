@@ -10,7 +10,7 @@ use crate::charts::figures::{
     CarLosses, GuideLine, PhaseLosses, Variogram, loss_by_component, loss_by_phase, variogram,
 };
 use crate::charts::{
-    Picture, PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure,
+    Picture, PlotRun, driveline, fuel_bars, group_fuel, logged, losses, operating_points, pressure,
     price_bars, published_drive, temperatures,
 };
 use cvtcycle_config::cycle::phase_group;
@@ -61,9 +61,28 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
         section.more = std::mem::take(&mut section.blocks);
         section
     });
-    std::iter::once(losses_section(found, all))
+    log_section(found)
+        .into_iter()
+        .chain([losses_section(found, all)])
         .chain(folded)
         .collect()
+}
+
+/// Quantities of a log and of the subject; none of a drive without them.
+fn log_section(found: &RunResults) -> Option<Section> {
+    let summary = &found.summary;
+    let (recording, car) = summary.recording.as_ref().zip(summary.runs.first())?;
+    let picture = logged(recording, car.label(), &conditions(found))?;
+    let mut section = Section::new("log", "The log beside the computed car");
+    section.figure(
+        "log",
+        format!(
+            "Quantities of the log and those computed of {}, means over stretches of the drive.",
+            car.label()
+        ),
+        picture,
+    );
+    Some(section)
 }
 
 fn plot<'a>(car: &Car<'a>, summary: &Summary) -> Option<PlotRun<'a>> {

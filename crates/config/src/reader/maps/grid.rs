@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use super::box_script;
 use super::fuel::{self, Unread};
 use super::row::{Row, is_value};
 use super::script::{Matrix, Script};
@@ -106,6 +107,25 @@ fn script<'t>(
         .map(|(number, text)| Line { number, text })
         .collect();
     let named = schema.named.as_ref().filter(|named| !named.is_empty());
+    if let Some(places) = box_script::places(schema) {
+        let ratio = named.map(|named| named.by_name(schema));
+        let ratio = match ratio {
+            Some(Ok(list)) if list.len() == 1 && list[0].1 == places[0] => {
+                Some(list[0].0.to_owned())
+            }
+            _ => None,
+        };
+        let is_own = named.is_none() || ratio.is_some();
+        let found = box_script::from_script(places, &script, &lines, ratio.as_deref());
+        match found.filter(|_| is_own) {
+            Some(Ok(found)) => return found,
+            Some(Err((why, hint))) => {
+                unread(&why, &lines, problems, hint);
+                return none;
+            }
+            None => {}
+        }
+    }
     if let Some(named) = named {
         return match by_names(schema, named, &script, &lines) {
             Ok((columns, rows)) => (columns, rows, Some("a script".to_owned())),
@@ -118,33 +138,51 @@ fn script<'t>(
     if let Some(found) = full_load(schema, &script, &lines) {
         return found;
     }
-    let hint = "say which names are meant: KEY = { value = \"FILE\", columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\" }";
+    let is_box = box_script::places(schema).is_some();
+    let hint = match is_box {
+        true => {
+            "say which names are meant: KEY = { value = \"FILE\", columns = \"ratio=NAME,speed=NAME:rad/s,torque=NAME:Nm,efficiency=NAME\" }"
+        }
+        false => {
+            "say which names are meant: KEY = { value = \"FILE\", columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\" }"
+        }
+    };
     match is_fuel
         .then(|| fuel::from_script(&script, &lines))
         .flatten()
     {
         Some(Ok(found)) => (found.columns, found.rows, Some(found.read_as)),
-        Some(Err(Unread { line, why, allowed })) => {
-            let line = lines.get(line.saturating_sub(1)).copied();
-            problems.line(
-                line.unwrap_or(Line {
-                    number: 1,
-                    text: "",
-                }),
-                "",
-                || Problem::conflict(why).allowed(allowed).hint(hint),
-            );
+        Some(Err(why)) => {
+            unread(&why, &lines, problems, hint);
             none
         }
         None => {
+            let allowed = match is_box {
+                true => box_script::NAMES,
+                false => fuel::SCRIPT_NAMES,
+            };
             problems.file(
                 Problem::missing("the script has no table that is known")
-                    .allowed(fuel::SCRIPT_NAMES)
+                    .allowed(allowed)
                     .hint(hint),
             );
             none
         }
     }
+}
+
+/// Reports the reason for which a script is not read.
+fn unread(why: &Unread, lines: &[Line<'_>], problems: &mut Collector<'_>, hint: &str) {
+    let line = lines.get(why.line.saturating_sub(1)).copied();
+    let line = line.unwrap_or(Line {
+        number: 1,
+        text: "",
+    });
+    problems.line(line, "", || {
+        Problem::conflict(why.why.clone())
+            .allowed(why.allowed)
+            .hint(hint)
+    });
 }
 
 /// The full-load line of a script, where the schema is one.

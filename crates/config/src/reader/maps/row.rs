@@ -1,4 +1,4 @@
-//! What the forms of a map have in common: its rows, and which of its columns is the value.
+//! Rows of a map and the column of its value, in which all forms agree.
 
 use crate::csv::{Line, Schema};
 

@@ -29,7 +29,7 @@ pub(super) struct Wide {
     pub read_as: Option<String>,
 }
 
-/// What is in the first column of a matrix, across it, and in its cells.
+/// Columns of the schema in the first column of a matrix, across it, and in its cells.
 type Meaning = [usize; 3];
 
 impl Wide {
@@ -226,7 +226,7 @@ struct Matrix<'m> {
 }
 
 impl Matrix<'_> {
-    /// What its parts are: said by the user, by its corner and title, or by what an engine can be.
+    /// Meaning of its parts: said by the user, by its corner and title, or by what an engine can be.
     fn meaning(&self) -> Result<Meaning, Problem> {
         if let Some(named) = self.long.named.as_ref().filter(|named| !named.is_empty()) {
             let places = named.in_order(self.long)?;

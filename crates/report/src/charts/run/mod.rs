@@ -1,12 +1,14 @@
 //! Pictures of a run: traces, losses, operating points, fuel.
 
 mod fuel_bars;
+mod logged;
 mod losses;
 mod operating;
 mod timeline;
 mod traces;
 
 pub use fuel_bars::fuel_bars;
+pub use logged::logged;
 pub use losses::{LossBins, bin_losses, losses};
 pub use operating::operating_points;
 pub use traces::{driveline, pressure, temperatures};
