@@ -695,6 +695,16 @@ impl Reader<'_, '_> {
                 return Err(self.falls(samples, &falls, *first, chosen, leading));
             }
         }
+        self.merge(samples, others, repairs)
+    }
+
+    /// Makes one row of those with the same stamp, or says why that cannot be.
+    fn merge(
+        &self,
+        samples: &mut Samples,
+        others: &mut [Vec<f64>],
+        repairs: &mut Vec<Repair>,
+    ) -> Result<(), Refused> {
         let doubled = samples
             .time_s
             .windows(2)
@@ -703,7 +713,7 @@ impl Reader<'_, '_> {
         if doubled == 0 {
             return Ok(());
         }
-        if !wanted.stamps {
+        if !self.columns.repairs().stamps {
             let problem = Problem::conflict(format!(
                 "{} with the stamp of the row above",
                 number_of(doubled, "row")
