@@ -43,6 +43,9 @@ use cvtcycle::output::BUILD;
 static LONG_VERSION: LazyLock<String> =
     LazyLock::new(|| format!("{} (build {BUILD})", env!("CARGO_PKG_VERSION")));
 
+/// Command line of the program.
+pub type Cli = CommandLine<Command>;
+
 /// Drive-cycle losses and fuel of cars with a pushing-belt CVT, cold and warm, from component physics
 #[derive(Debug, Parser)]
 #[command(
@@ -54,7 +57,7 @@ static LONG_VERSION: LazyLock<String> =
     after_help = "Example: cvtcycle run --cycle ece15_eudc --ambient -10\n\n\
         Exit codes: 0 success; 1 a check failed (trace missed, energy not balanced); 2 bad input; 130 stopped by Ctrl-C."
 )]
-pub struct Cli {
+pub struct CommandLine<C: Subcommand> {
     /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR
     #[arg(
         long,
@@ -66,11 +69,29 @@ pub struct Cli {
     )]
     pub color: ColorChoice,
     #[command(subcommand)]
-    command: Command,
+    command: C,
 }
 
+/// The command of a run alone: building the arguments of all commands takes longer than the drive.
 #[derive(Debug, Subcommand)]
-enum Command {
+pub enum RunOnly {
+    /// As the command of [`Command`].
+    Run(Box<run::RunArgs>),
+}
+
+impl From<CommandLine<RunOnly>> for Cli {
+    fn from(line: CommandLine<RunOnly>) -> Cli {
+        let RunOnly::Run(args) = line.command;
+        Cli {
+            color: line.color,
+            command: Command::Run(args),
+        }
+    }
+}
+
+/// All commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
     /// Simulate a vehicle and its baselines on a drive cycle: fuel, losses, temperatures
     Run(Box<run::RunArgs>),
     /// Compute the fuel that each loss of the transmission costs: the car driven again without it

@@ -4,11 +4,11 @@ use std::ffi::OsString;
 use std::sync::{Mutex, PoisonError};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, FromArgMatches};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Subcommand};
 use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Problem, is_hidden, visible};
 
-use super::Cli;
+use super::{Cli, Command, CommandLine, RunOnly};
 use crate::args::problems::bad_value;
 use crate::print::colour::choice;
 use crate::print::{self, CommandOutput, Ending, Terminal};
@@ -28,10 +28,13 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
     *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words.iter().skip(1).cloned().collect();
     // Found before clap parses the words, because clap's messages are coloured too.
     let colour = choice(&words);
-    let parsed = Cli::command()
-        .color(colour)
-        .try_get_matches_from(&words)
-        .and_then(|matches| Cli::from_arg_matches(&matches));
+    let is_run = words.get(1).is_some_and(|word| word == "run");
+    let quick = is_run.then(|| parse::<RunOnly>(&words, colour).ok());
+    // Help and problems come from the whole tree of commands.
+    let parsed = match quick.flatten() {
+        Some(line) => Ok(line.into()),
+        None => parse::<Command>(&words, colour),
+    };
     match parsed {
         Ok(cli) => {
             let terminal = Terminal::new(cli.color);
@@ -47,6 +50,15 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
             print::finish(result, terminal)
         }
     }
+}
+
+/// Parses the command line with the commands of a tree.
+fn parse<C: Subcommand>(
+    words: &[OsString],
+    colour: ColorChoice,
+) -> Result<CommandLine<C>, clap::Error> {
+    let command = CommandLine::<C>::command().color(colour);
+    CommandLine::from_arg_matches(&command.try_get_matches_from(words)?)
 }
 
 /// Suggests `--vehicle` for a file without an option (`run mycar.toml`) where the command has it.
@@ -100,5 +112,40 @@ fn usage(error: &clap::Error, terminal: Terminal) -> CommandOutput {
             help: text(terminal.stdout.is_on()),
             ..CommandOutput::default()
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tree with all commands reads the same from the words of a run; what it refuses is refused by both.
+    #[test]
+    fn a_run_is_parsed_alike_without_the_other_commands() {
+        let lines = [
+            "run",
+            "run --cycle ftp75 --ambient=-10 --baseline twin --set a.b=1 --set c.d=2 --price never",
+            "run --color never --json --out there --force --format both --draws 256",
+            "run -q --color=always --strict",
+        ];
+        let words = |line: &str| -> Vec<OsString> {
+            let words = ["cvtcycle"].into_iter().chain(line.split(' '));
+            words.map(OsString::from).collect()
+        };
+        for line in lines.map(words) {
+            let quick = parse::<RunOnly>(&line, ColorChoice::Never).expect("words of a run");
+            let whole = parse::<Command>(&line, ColorChoice::Never).expect("words of a run");
+            assert_eq!(format!("{:?}", Cli::from(quick)), format!("{whole:?}"));
+        }
+        let refused = [
+            "run --no-such",
+            "run --help",
+            "run car.toml",
+            "run --format csv",
+        ];
+        for line in refused.map(words) {
+            assert!(parse::<RunOnly>(&line, ColorChoice::Never).is_err());
+            assert!(parse::<Command>(&line, ColorChoice::Never).is_err());
+        }
     }
 }

@@ -189,7 +189,8 @@ impl Execute for RunArgs {
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
         // Looks up published values by the name of a shipped vehicle, in parallel with the drive.
-        let read = || published(&vehicles[0].name, &cycle.name);
+        let names: Vec<&str> = vehicles.iter().map(|car| car.name.as_str()).collect();
+        let read = || published(names[0], &names[1..], &cycle.name);
         let (published, outcomes) = in_parallel(read, || plan.cars.drive(&conditions));
         let driven = vehicles::driven(vehicles, &outcomes);
         let question = RunQuestion {
@@ -213,7 +214,10 @@ impl Execute for RunArgs {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
             name_run(&mut summary, record.insert(inputs));
         }
-        let json = json_text(&summary)?;
+        let json = match out.is_some() || self.output.json() {
+            true => json_text(&summary)?,
+            false => String::new(),
+        };
         let files = WrittenFiles::write(out, |dir| {
             run_files::write(dir, plan.format, &summary, cycle, &driven)?;
             dir.put("summary.json", &json)?;

@@ -28,7 +28,8 @@ pub struct RunQuestion<'a> {
     pub settings: Settings,
     /// True to drive each car again without each loss, for the price of that loss in fuel.
     pub price: bool,
-    /// Published numbers about the subject on the cycle, as [`published`](cvtcycle_validate::published) has them, where they are read already.
+    /// Published numbers about the subject, alone and over the baselines, on the cycle, as [`published`](cvtcycle_validate::published) has them, where
+    /// they are read already.
     pub published: Option<Vec<ValidationRow>>,
 }
 

@@ -84,8 +84,11 @@ def test_problems_are_data() -> None:
 
 def test_bad_cycles_have_their_line() -> None:
     with pytest.raises(cc.InputError) as caught:
-        cc.Cycle.from_arrays([0, 1, 1, math.nan], [0, 1, 2, 3], name="log")
+        cc.Cycle.from_arrays([0, 1, 0.5, 3], [0, 1, 2, 1e6], name="log")
     assert {(p["file"], p["line"]) for p in caught.value.problems} >= {("log", 4), ("log", 5)}
+    # Rows without a time and doubled ones are repaired, and counted.
+    repairs = cc.Cycle.from_arrays([0, 1, 1, math.nan], [0, 1, 2, 3]).repairs
+    assert [repair[:2] for repair in repairs] == [("empty", 1), ("stamps", 1)]
     with pytest.raises(cc.InputError, match="different lengths"):
         cc.Cycle.from_arrays([0, 1], [0, 1, 2])
     with pytest.raises(cc.InputError):

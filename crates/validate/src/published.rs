@@ -4,21 +4,33 @@ use super::read::read;
 use super::rows::ValidationRow;
 use super::{COMMON, embedded_rows};
 
-/// The rows of the program's files about a vehicle on a cycle. Only these are read: all rows would take longer than a run.
-pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
-    let quoted = [subject, cycle].map(|word| format!("\"{word}\""));
+/// The rows of the program's files about a vehicle on a cycle, alone or over one of the baselines. Only these are read: all rows would take longer
+/// than a run.
+pub fn published(subject: &str, baselines: &[&str], cycle: &str) -> Vec<ValidationRow> {
+    let quote = |word: &str| format!("\"{word}\"");
+    let quoted = [subject, cycle].map(quote);
+    let quoted_baselines: Vec<String> = baselines.iter().map(|word| quote(word)).collect();
+    let holds = |line: &str, word: &String| line.contains(word.as_str());
+    let is_compared = |line: &str| {
+        !line.contains(BASELINE) || quoted_baselines.iter().any(|word| holds(line, word))
+    };
     let is_about = |row: &&str| {
         let mut lines = row
             .split(ABOUT)
             .skip(1)
             .filter_map(|rest| rest.lines().next());
-        lines.any(|line| quoted.iter().all(|word| line.contains(word.as_str())))
+        lines.any(|line| quoted.iter().all(|word| holds(line, word)) && is_compared(line))
     };
     let rows = rows_of(|row| row.contains(ABOUT) && is_about(row));
     rows.into_iter()
         .filter(|row| {
             let about = row.about.as_ref();
-            about.is_some_and(|about| about.subject == subject && about.cycle == cycle)
+            about.is_some_and(|about| {
+                let baseline = about.baseline.as_deref();
+                about.subject == subject
+                    && about.cycle == cycle
+                    && baseline.is_none_or(|name| baselines.contains(&name))
+            })
         })
         .collect()
 }
@@ -60,6 +72,8 @@ fn rows_of(wanted: impl Fn(&&str) -> bool) -> Vec<ValidationRow> {
 
 /// The beginning of the line that says which run a row is about.
 const ABOUT: &str = "\nabout = ";
+/// The key of the vehicle that a row compares with, in that line.
+const BASELINE: &str = "baseline = ";
 /// The beginning of a row.
 const ROW: &str = "\n[[row]]\n";
 /// The beginning of a tolerance or a source.
@@ -109,6 +123,7 @@ fn name(part: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::rows::About;
     use super::*;
     use cvtcycle_config::Place;
 
@@ -121,14 +136,18 @@ mod tests {
         let all = read(COMMON, &files).expect("the program's own rows");
         let all: Vec<ValidationRow> = all.into_iter().flat_map(|file| file.rows).collect();
         let abouts = all.iter().filter_map(|row| row.about.clone());
-        let mut pairs: Vec<_> = abouts.map(|about| (about.subject, about.cycle)).collect();
-        pairs.sort();
-        pairs.dedup();
-        assert!(pairs.len() > 4, "{pairs:?}");
-        for (subject, cycle) in pairs {
+        let keys = |about: About| (about.subject, about.baseline, about.cycle);
+        let mut compared: Vec<_> = abouts.map(keys).collect();
+        compared.sort();
+        compared.dedup();
+        assert!(compared.len() > 6, "{compared:?}");
+        for (subject, baseline, cycle) in compared {
             let is_about = |row: &&ValidationRow| {
                 let about = row.about.as_ref();
-                about.is_some_and(|of| of.subject == subject && of.cycle == cycle)
+                about.is_some_and(|of| {
+                    let same = of.baseline.is_none() || of.baseline == baseline;
+                    of.subject == subject && of.cycle == cycle && same
+                })
             };
             let plain = |row: &ValidationRow| ValidationRow {
                 id_place: Place::default(),
@@ -138,13 +157,16 @@ mod tests {
                 ..row.clone()
             };
             let whole: Vec<ValidationRow> = all.iter().filter(is_about).map(plain).collect();
-            let own: Vec<ValidationRow> = published(&subject, &cycle).iter().map(plain).collect();
+            let baselines: Vec<&str> = baseline.as_deref().into_iter().collect();
+            let own = published(&subject, &baselines, &cycle);
+            let own: Vec<ValidationRow> = own.iter().map(plain).collect();
             assert_eq!(
                 format!("{own:?}"),
                 format!("{whole:?}"),
-                "{subject} {cycle}"
+                "{subject} {baseline:?} {cycle}"
             );
         }
-        assert!(published("rover_216_cvt", "nycc").is_empty());
+        assert!(published("rover_216_cvt", &["rover_216_5mt"], "nycc").is_empty());
+        assert!(published("rover_216_cvt", &[], "ece15_eudc").is_empty());
     }
 }

@@ -201,6 +201,14 @@ fn faults_that_cannot_be_mended_in_one_way_are_refused_by_name() {
             "{repairs:?}"
         );
     }
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("one_stamp.csv");
+    fs::write(&file, "t,v\n5,0\n5,1\n5,2\n").unwrap();
+    let columns = ["--columns", "time=t:s,speed=v:km/h"];
+    let output = run(&[&["run", "--cycle", file.to_str().unwrap()], &columns[..]].concat());
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("all rows have the same stamp"), "{text}");
     let spike = fuel(&alone("k10_gps_spike.csv", &[]));
     // The same drive with the sample as its neighbours have it.
     let dir = tempfile::tempdir().unwrap();

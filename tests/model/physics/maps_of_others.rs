@@ -602,7 +602,12 @@ fn justy_script(final_drive: f64) -> String {
     for (k, ratio) in ratios.iter().enumerate() {
         let row = |speed: &f64| {
             let at = |torque: &f64| {
-                let is = |row: &&Vec<f64>| [row[0], row[1], row[2]] == [*ratio, *speed, *torque];
+                let wanted = [ratio, speed, torque];
+                let is = |row: &&Vec<f64>| {
+                    row.iter()
+                        .zip(wanted)
+                        .all(|(a, b)| a.to_bits() == b.to_bits())
+                };
                 rows.iter().find(is).unwrap()[3] / 100.0
             };
             list(&torques.iter().map(at).collect::<Vec<_>>())

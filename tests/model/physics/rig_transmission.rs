@@ -17,7 +17,7 @@ use cvtcycle_model::rig::transmission::{
 use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::thermal::{Heat, HeatInput, METAL, SUMP};
 use cvtcycle_model::transmission::component::Component;
-use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, Formulation};
+use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 const CAR: &str = "rover_216_cvt";
 

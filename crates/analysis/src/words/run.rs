@@ -141,7 +141,10 @@ fn contradicted(
     };
     let rows = match known {
         Some(rows) => Cow::Borrowed(rows),
-        None => Cow::Owned(published(subject.name, &summary.cycle)),
+        None => {
+            let baselines: Vec<&str> = driven.iter().skip(1).map(|car| car.name).collect();
+            Cow::Owned(published(subject.name, &baselines, &summary.cycle))
+        }
     };
     // A car is read again once at most, and only where a row is about it.
     let shipped: Vec<OnceCell<bool>> = vec![OnceCell::new(); driven.len()];

@@ -244,7 +244,10 @@ fn contradictions(answer: &Answer, outline: &StudyManifest) -> Vec<String> {
     let Some(subject) = subject.filter(|_| !changed && !other_oil) else {
         return Vec::new();
     };
-    let said = published(subject, &base.cycle)
+    let in_matrix = answer.matrix.iter().flat_map(|matrix| &matrix.cars);
+    let compared = answer.comparisons.iter().map(|of| &of.baseline);
+    let baselines: Vec<&str> = in_matrix.chain(compared).map(String::as_str).collect();
+    let said = published(subject, &baselines, &base.cycle)
         .into_iter()
         .filter_map(|row| {
             let about = row.about.as_ref()?;

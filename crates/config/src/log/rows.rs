@@ -110,6 +110,16 @@ impl Reader<'_, '_> {
                 return Err(self.falls(samples, &falls, *first, chosen, leading));
             }
         }
+        self.merge(samples, others, repairs)
+    }
+
+    /// Makes one row of those with the same stamp, or says why that cannot be.
+    fn merge(
+        &self,
+        samples: &mut Samples,
+        others: &mut [Vec<f64>],
+        repairs: &mut Vec<Repair>,
+    ) -> Result<(), Refused> {
         let doubled = samples
             .time_s
             .windows(2)
@@ -118,7 +128,7 @@ impl Reader<'_, '_> {
         if doubled == 0 {
             return Ok(());
         }
-        if !wanted.stamps {
+        if !self.columns.repairs().stamps {
             let problem = Problem::conflict(format!(
                 "{} with the stamp of the row above",
                 number_of(doubled, "row")
@@ -131,14 +141,28 @@ impl Reader<'_, '_> {
         }
         let before = samples.clone();
         match samples.merge(others) {
+            Ok(_) if samples.time_s.len() < 2 => {
+                let problem = Problem::missing("all rows have the same stamp")
+                    .in_file(self.file)
+                    .key("time")
+                    .allowed("at least two stamps");
+                Err(Refused::known(problem))
+            }
             Ok(gone) => {
+                // The first of the rows above it with its stamp.
+                let is_first = |k: &usize| {
+                    before.time_s[*k] <= before.time_s[k - 1]
+                        && (*k == 1 || before.time_s[k - 1] > before.time_s[k - 2])
+                };
+                let means = (1..before.time_s.len()).filter(is_first).count();
+                let have = if means == 1 { "has" } else { "have" };
                 repairs.push(made(
                     "stamps",
                     gone,
                     format!(
-                        "{} of a stamp that is there already, {} stamps have the mean of theirs",
+                        "{} of a stamp that is there already, {} {have} the mean of theirs",
                         number_of(gone, "row"),
-                        samples.time_s.len()
+                        number_of(means, "stamp")
                     ),
                 ));
                 Ok(())

@@ -259,57 +259,47 @@ impl Replaced {
     }
 }
 
+/// The tables of bands, micro slip, macro slip and wet clutch.
+fn benches<V: Values>(s: &V, fluid: &Lubricant) -> [Option<Arc<Bench>>; 4] {
+    let bands = ContactKeys {
+        table: &BANDS.table,
+        test: &BANDS.test,
+        pressure_mpa: &BANDS.pressure_mpa,
+        slip: None,
+    };
+    let micro = ContactKeys {
+        table: &MICRO.table,
+        test: &MICRO.test,
+        pressure_mpa: &MICRO.pressure_mpa,
+        slip: Some(&MICRO.slip_percent),
+    };
+    let of_macro = ContactKeys {
+        table: &MACRO.table,
+        test: &MACRO.test,
+        pressure_mpa: &MACRO.pressure_mpa,
+        slip: Some(&MACRO.slip_percent),
+    };
+    let wet = ContactKeys {
+        table: &WET.table,
+        test: &WET.test,
+        pressure_mpa: &WET.pressure_mpa,
+        slip: None,
+    };
+    [
+        ("bands", Contact::Bands, bands),
+        ("micro_slip", Contact::MicroSlip, micro),
+        ("macro_slip", Contact::MacroSlip, of_macro),
+        ("wet_clutch", Contact::WetClutch, wet),
+    ]
+    .map(|(name, contact, keys)| bench_of(&s.table(name), contact, &keys, fluid))
+}
+
 impl Friction {
     fn from_values<V: Values>(s: &V, fluid: &Lubricant) -> (Self, Vec<Arc<Bench>>) {
         let film = s.table("film");
-        let of_bands = s.table("bands");
-        let bands = bench_of(
-            &of_bands,
-            Contact::Bands,
-            &ContactKeys {
-                table: &BANDS.table,
-                test: &BANDS.test,
-                pressure_mpa: &BANDS.pressure_mpa,
-                slip: None,
-            },
-            fluid,
-        );
-        let of_micro = s.table("micro_slip");
-        let micro = bench_of(
-            &of_micro,
-            Contact::MicroSlip,
-            &ContactKeys {
-                table: &MICRO.table,
-                test: &MICRO.test,
-                pressure_mpa: &MICRO.pressure_mpa,
-                slip: Some(&MICRO.slip_percent),
-            },
-            fluid,
-        );
-        let of_macro = s.table("macro_slip");
-        let macro_ = bench_of(
-            &of_macro,
-            Contact::MacroSlip,
-            &ContactKeys {
-                table: &MACRO.table,
-                test: &MACRO.test,
-                pressure_mpa: &MACRO.pressure_mpa,
-                slip: Some(&MACRO.slip_percent),
-            },
-            fluid,
-        );
-        let of_wet = s.table("wet_clutch");
-        let wet = bench_of(
-            &of_wet,
-            Contact::WetClutch,
-            &ContactKeys {
-                table: &WET.table,
-                test: &WET.test,
-                pressure_mpa: &WET.pressure_mpa,
-                slip: None,
-            },
-            fluid,
-        );
+        let [of_bands, of_micro, of_macro] =
+            ["bands", "micro_slip", "macro_slip"].map(|name| s.table(name));
+        let [bands, micro, macro_, wet] = benches(s, fluid);
         let of_gears = s.table("gears");
         let carries = bands.as_ref().filter(|bench| bench.film_carries());
         // Where there is a table, its curve is the default of the numbers that it replaces.

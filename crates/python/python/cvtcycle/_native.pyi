@@ -14,6 +14,7 @@ __all__ = [
     "belt",
     "calibrate",
     "explain",
+    "fleet",
     "losses",
     "names",
     "program",

@@ -64,7 +64,7 @@ impl GridMatrix {
         let places: Vec<Vec<f64>> = places
             .iter()
             .map(|factor| {
-                let list = factor.values.list().into_iter();
+                let list = factor.values.list().iter();
                 list.filter_map(|value| value.number()).collect()
             })
             .collect();

@@ -81,7 +81,9 @@ pub fn vehicle(data: &[u8]) {
 pub fn lubricant(data: &[u8]) {
     static SHIPPED: Texts = OnceLock::new();
     let text = edits::text(data, texts(&SHIPPED, embedded_lubricants()));
-    read(&text, |text| setup::read_lubricant("fuzz.toml", text));
+    read(&text, |text| {
+        setup::read_lubricant("fuzz.toml", text, &Disk::default())
+    });
 }
 
 pub fn study_plan(data: &[u8]) {
