@@ -113,6 +113,8 @@ def test_closed_files(tmp_path) -> None:
 
 def interrupted(call) -> float:
     """Seconds from the signal to KeyboardInterrupt."""
+    # A shell starts what it leaves in the background with the signal ignored, and Python keeps that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT))
     begun = time.monotonic()
     timer.start()
