@@ -402,7 +402,12 @@ fn shipped_plans_give_the_shipped_values() {
         let outcome = solved(&plan);
         assert!(outcome.converged, "{name}: {:?}", outcome.warnings);
         for p in outcome.parameters.iter().filter(|p| p.is_key) {
-            let error = p.standard_error.expect("a standard error");
+            let Some(error) = p.standard_error else {
+                // At a bound, which the file has too.
+                let is_at = (p.value - p.file_value).abs() <= 1e-9 * p.high;
+                assert!(p.at_bound.is_some() && is_at, "{name}: {}", p.name);
+                continue;
+            };
             assert!(
                 (p.value - p.file_value).abs() < 0.25 * error,
                 "{name}: {} is {} in the file, {} +- {error} fitted",
@@ -410,7 +415,9 @@ fn shipped_plans_give_the_shipped_values() {
                 p.file_value,
                 p.value
             );
-            free.insert(p.name.clone());
+            if !p.name.contains(" of ") {
+                free.insert(p.name.clone());
+            }
         }
     }
     let car = setup::load("rover_216_cvt", &Options::default()).expect("the shipped car");

@@ -245,7 +245,7 @@ fn defaults_are_those_of_run() {
         .output()
         .unwrap();
     let help = String::from_utf8(help.stdout).unwrap();
-    for default in ["rover_216_cvt", "ece15_eudc", "25", "soak", "1", "smooth"] {
+    for default in ["rover_216_cvt", "ece15_eudc", "25", "auto", "1", "smooth"] {
         assert!(
             help.contains(&format!("[default: {default}]")),
             "{default}: {help}"

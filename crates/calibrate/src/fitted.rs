@@ -83,12 +83,12 @@ impl Job<'_> {
     /// Keys within a file of a vehicle with their fitted values.
     fn fitted<'b>(
         &'b self,
-        vehicle: &'b String,
+        vehicle: &'b str,
         target: Target,
     ) -> impl Iterator<Item = (&'b str, &'b Parameter)> {
         // The keys come first, in the order of the plan.
         let all = self.plan.parameters.iter().zip(&self.outcome.parameters);
-        let own = all.filter(move |(free, _)| free.vehicles.contains(vehicle));
+        let own = all.filter(move |(free, _)| free.is_of(vehicle, self.plan));
         own.filter_map(move |(free, p)| {
             let (of, key) = Target::from_key(&free.key);
             (of == target).then_some((key, p))
@@ -96,7 +96,7 @@ impl Job<'_> {
     }
 
     /// The file of another vehicle of the plan with its values; those of a fluid are in the files of the plan's own.
-    fn other(&self, vehicle: &String) -> Result<(String, String), Problems> {
+    fn other(&self, vehicle: &str) -> Result<(String, String), Problems> {
         let (_, text, disk) = text_of(vehicle, Kind::Vehicle, NamedBy::File)?;
         let mut document = parsed(self.plan, &text)?;
         make_absolute(document.as_item_mut(), &disk.folder);

@@ -31,7 +31,7 @@ fn list_prints_cycles_and_plans() {
             .as_array()
             .unwrap()
             .len(),
-        6
+        7
     );
     assert_eq!(
         json(&["list", "lubricants", "--json"])["lubricants"]

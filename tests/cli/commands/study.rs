@@ -116,7 +116,7 @@ fn the_plan_of_three_fluids_is_one_matrix() {
     assert!((end(2, 0) - (by_hand - sums[0].sqrt())).abs() < 1e-9);
     assert!((end(2, 1) - (by_hand + sums[1].sqrt())).abs() < 1e-9);
     assert!(end(2, 0) < cell && cell < end(2, 1));
-    assert_eq!([end(0, 0), end(0, 1)], [0.0; 2]);
+    assert_eq!([end(0, 0), end(0, 1)].map(f64::to_bits), [0; 2]);
     let notes = found["notes"].as_array().unwrap();
     let of_two = "oil dexron_ii, dexron_iii: friction not measured with this fluid: bands";
     assert!(

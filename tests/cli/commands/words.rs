@@ -223,7 +223,20 @@ fn no_difference_of_an_own_car_is_without_its_range() {
         "--mass",
         "1400",
     ];
-    run_here(&[&["new", "own", "--box", "box_cvt_converter"][..], &engine].concat());
+    run_here(
+        &[
+            &[
+                "new",
+                "own",
+                "--box",
+                "box_cvt_converter",
+                "--n-over-v",
+                "19.5",
+            ][..],
+            &engine,
+        ]
+        .concat(),
+    );
     let twin = ["--baseline", "twin"];
     let run_text = run_here(
         &[

@@ -120,7 +120,7 @@ impl<'p> Cars<'p> {
         let vehicle = source.and_then(|source| source.vehicle.as_ref());
         let vehicle = vehicle.unwrap_or(&car.vehicle);
         let plan = self.plan;
-        let own = |(_, free): &(usize, &FreeParameter)| free.vehicles.contains(vehicle);
+        let own = |(_, free): &(usize, &FreeParameter)| free.is_of(vehicle, plan);
         let free: Vec<_> = plan.parameters.iter().enumerate().filter(own).collect();
         if free.is_empty() && *vehicle != car.vehicle {
             self.fixed.insert(name, load(vehicle, &options)?);

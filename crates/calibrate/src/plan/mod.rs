@@ -32,7 +32,7 @@ use cvtcycle_validate::source::Source;
 pub struct FreeParameter {
     /// Dotted key, as `--set` has it.
     pub key: String,
-    /// Vehicles that have the number in common, by name or path.
+    /// Vehicles that have the number in common, by name or path; none for the plan's own.
     pub vehicles: Vec<String>,
     /// Least value, in the unit of the key.
     pub low: f64,
@@ -53,10 +53,19 @@ pub struct FreeParameter {
 }
 
 impl FreeParameter {
+    /// True if a vehicle has this number.
+    #[must_use]
+    pub fn is_of(&self, vehicle: &str, plan: &CalibrationPlan) -> bool {
+        match self.vehicles.is_empty() {
+            true => vehicle == plan.car.vehicle,
+            false => self.vehicles.iter().any(|own| own == vehicle),
+        }
+    }
+
     /// Name among the parameters of a plan: the key, with the vehicles where they are not the plan's own.
     #[must_use]
     pub fn name(&self, plan: &CalibrationPlan) -> String {
-        if self.vehicles.contains(&plan.car.vehicle) {
+        if self.is_of(&plan.car.vehicle, plan) {
             return self.key.clone();
         }
         let names: Vec<String> = self.vehicles.iter().map(|word| stem(word)).collect();

@@ -83,12 +83,7 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
     let written = written.map(|(header, list)| list.len().max(usize::from(is_hinted(header))));
     for document in &parameters {
         match parameter::read(document, file) {
-            Ok(mut free) => {
-                if free.vehicles.is_empty() {
-                    free.vehicles.push(plan.car.vehicle.clone());
-                }
-                plan.parameters.push(free);
-            }
+            Ok(free) => plan.parameters.push(free),
             Err(found) => problems.append(found),
         }
     }
@@ -217,10 +212,9 @@ fn join(plan: &mut CalibrationPlan, found: Found) {
 }
 
 /// True if a vehicle has both numbers.
-fn shares_a_vehicle(a: &FreeParameter, b: &FreeParameter) -> bool {
-    a.vehicles
-        .iter()
-        .any(|vehicle| b.vehicles.contains(vehicle))
+fn shares_a_vehicle(plan: &CalibrationPlan, a: &FreeParameter, b: &FreeParameter) -> bool {
+    let mut named = a.vehicles.iter().chain([&plan.car.vehicle]);
+    named.any(|vehicle| a.is_of(vehicle, plan) && b.is_of(vehicle, plan))
 }
 
 /// All clashes; `[parameters, groups]` is how many were written, and `sound` whether nothing else is wrong.
@@ -242,7 +236,7 @@ fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool
     for (k, free) in plan.parameters.iter().enumerate() {
         if let Some(first) = plan.parameters[..k]
             .iter()
-            .find(|other| other.key == free.key && shares_a_vehicle(other, free))
+            .find(|other| other.key == free.key && shares_a_vehicle(plan, other, free))
         {
             let (key, line) = (&free.key, first.place.line);
             let message = format!("`{key}` is free twice, first in line {line}");

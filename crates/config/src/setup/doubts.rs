@@ -347,7 +347,7 @@ pub(super) fn gripped_nm(cvt: &Cvt, oil: &Lubricant, secondary_clamp_n: f64) -> 
         secondary_clamp_n,
         ..BeltLoad::turning(&cvt.belt, oil, WARM_K, cvt.ratio.low, SLOW_RAD_S)
     };
-    carried_nm(&cvt.belt, &at, &load) / cvt.ratio.low
+    belt_capacity_nm(&cvt.belt, &at, &load) / cvt.ratio.low
 }
 
 /// The pump's flow at idle against what creeps, and at the speed of stall against full load.

@@ -54,6 +54,7 @@ struct Sheet {
     capacity: f64,
     held: bool,
     active: f64,
+    hold: f64,
     compression: f64,
 }
 
@@ -318,6 +319,7 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
             ),
         wedge,
         penetration,
+        hold,
         capacity: 2.0
             * if f == Formulation::Smooth {
                 l.capacity_friction
@@ -325,7 +327,7 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
                 mu
             }
             * rs
-            * hold.min(fs)
+            * fp.min(fs)
             / b.cos_wedge, // VA-2, VA-4
         held: if load < 0.0 {
             inverted.held
@@ -448,6 +450,7 @@ fn close(got: f64, want: f64, what: &str) {
 fn compare(got: &BeltState, want: &Sheet, place: &str) {
     let pairs = [
         ("C_x", got.tension.compression_n, want.compression),
+        ("F_h", got.losses.holding_n, want.hold),
         ("band", got.losses.band_nm, want.band),
         ("film", got.losses.film_nm, want.film),
         ("slip of the primary", got.slip.primary, want.slip[0]),

@@ -58,24 +58,6 @@ fn primary_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, secondary_n: f64) -> 
     idle_n + added_n * (1.0 - (whole_n / (idle_n + 0.5 * added_n)).min(1.0))
 }
 
-/// Force of the secondary from which on both pulleys have a force, N, by steps and bisection.
-fn holding_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, weaker_n: f64) -> f64 {
-    // In overrun the force may first fall with that of the secondary: the largest one counts at which it does not hold.
-    let steps = (1..=4000).map(|k| weaker_n * (1.0 + 0.001 * f64::from(k)));
-    let lacks = |secondary_n: &f64| primary_n(cvt, at, load, *secondary_n) < weaker_n;
-    let Some(mut low) = steps.rev().find(lacks) else {
-        let holds = primary_n(cvt, at, load, weaker_n) >= weaker_n;
-        assert!(holds, "between the first two steps");
-        return weaker_n;
-    };
-    let mut high = 1.001 * low + 0.001 * weaker_n;
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        *(if lacks(&middle) { &mut low } else { &mut high }) = middle;
-    }
-    high
-}
-
 /// PC-3: both signs of torque, the least torque, ratios on both sides of 1, and the bounds.
 #[test]
 fn val_torque_following_by_hand() {
@@ -90,9 +72,9 @@ fn val_torque_following_by_hand() {
     for ratio in [0.45, 0.8, 0.96, 0.98, 1.0, 1.5, 2.4] {
         let at = BeltAtRatio::new(&cvt.belt, ratio);
         for torque in [-120.0f64, -25.0, -24.0, 0.0, 26.0, 90.0, 200.0, 500.0] {
-            let weaker_n = 1.3 * torque.abs().max(25.0) * cvt.belt.cos_wedge
-                / (2.0 * 0.115 * at.geometry.secondary_radius_m);
-            let force = holding_n(cvt, &at, &load(torque), weaker_n);
+            let weaker = at.thrust_ratio.min(1.0);
+            let force = 1.3 * torque.abs().max(25.0) * cvt.belt.cos_wedge
+                / (2.0 * 0.115 * at.geometry.secondary_radius_m * weaker);
             let pa = (force - cvt.spring_n - 2e-3 * 90.0 * 90.0) / cvt.secondary_piston_m2;
             near(
                 cvt.pressure_pa(&SIGNALS, &at, || load(torque), 90.0).0,
@@ -210,9 +192,9 @@ fn val_floors_by_hand() {
             let at = BeltAtRatio::new(&cvt.belt, ratio);
             for torque in [-60.0f64, 0.0, 20.0, 60.0, 120.0] {
                 for force_log in [-0.6, -0.1, 0.0, 0.1, 0.6f64] {
-                    let weaker_n = 1.3 * torque.abs().max(1.0) * cvt.belt.cos_wedge
-                        / (2.0 * 0.115 * at.geometry.secondary_radius_m);
-                    let need_n = holding_n(cvt, &at, &load(torque), weaker_n);
+                    let weaker = at.thrust_ratio.min(1.0);
+                    let need_n = 1.3 * torque.abs().max(1.0) * cvt.belt.cos_wedge
+                        / (2.0 * 0.115 * at.geometry.secondary_radius_m * weaker);
                     let added_n =
                         primary_n(cvt, &at, &load(torque), need_n) - at.thrust_ratio * need_n;
                     let pa = |force_n: f64| (force_n - own_n) / cvt.secondary_piston_m2;

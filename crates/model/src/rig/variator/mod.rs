@@ -22,7 +22,7 @@ use crate::lubricant::{Lubricant, VALID_K};
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::variator::{
-    BeltAtRatio, BeltLoad, BeltState, Geometry, Tension, belt_state, carried_nm,
+    BeltAtRatio, BeltLoad, BeltState, Geometry, Tension, belt_state,
 };
 
 /// Largest torque at the secondary pulley, Nm (Table 6-1).
@@ -253,12 +253,6 @@ impl VariatorRig {
             .iter()
             .map(|torque| self.row(held, &at, &zero, *torque))
             .collect()
-    }
-
-    /// Torque at the secondary that is its own capacity, Nm (VA-4).
-    pub fn capacity_nm(&self, held: &Held) -> f64 {
-        let at = BeltAtRatio::new(&self.cvt.belt, held.ratio);
-        carried_nm(&self.cvt.belt, &at, &self.load(held, 0.0, 0.0))
     }
 
     /// Torque at which the compression between segments changes sign, Nm at the secondary (RV-5); negative in high ratio.

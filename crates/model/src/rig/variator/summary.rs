@@ -44,7 +44,7 @@ impl VariatorRig {
     pub fn summary(&self, held: &Held) -> CurveSummary {
         let slip = |torque: f64| self.rows(held, &[torque])[0].belt.losses.slip_total;
         let breakpoint_nm = self.breakpoint_nm(held);
-        let capacity_nm = self.capacity_nm(held);
+        let capacity_nm = self.rows(held, &[0.0])[0].belt.losses.capacity_nm;
         let from = larger(breakpoint_nm, 0.0);
         let scan = |low: f64, high: f64| -> Vec<VariatorRow> {
             let torques: Vec<f64> = (0..=POINTS)

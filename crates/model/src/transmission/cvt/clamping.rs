@@ -3,7 +3,7 @@
 use super::Cvt;
 use super::controller::{ClampLaw, PressurePoint};
 use super::floors::Held;
-use super::variator::{BeltAtRatio, BeltLoad, added_n, belt_state, whole_wrap_n};
+use super::variator::{BeltAtRatio, BeltLoad, belt_state};
 use crate::math::{Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 
@@ -86,12 +86,9 @@ impl<R: Real> Clamping<'_, R> {
         let formulation = cvt.belt.formulation;
         let segment = formulation.segment_friction(load.segment_friction);
         let mu = formulation.capacity_friction(segment, load.capacity_friction);
-        let radius_m = at.geometry.secondary_radius_m;
-        let weaker_n = safety * torque * cvt.belt.cos_wedge / (2.0 * mu * radius_m);
-        let force = match &cvt.belt.thrust_ratio {
-            Some(_) => weaker_n / at.thrust_ratio.min(1.0),
-            None => weaker_n.max(self.for_primary_n(weaker_n)),
-        }; // PC-3
+        let weaker = at.thrust_ratio.min(1.0);
+        let force = safety * torque * cvt.belt.cos_wedge
+            / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
         Held {
             cvt,
             at,
@@ -100,28 +97,6 @@ impl<R: Real> Clamping<'_, R> {
             need_n: force,
             force_log: self.force_log,
         }
-    }
-
-    /// Force of the secondary at which the primary has a force, N, under the load: TE-9 solved for F_s.
-    fn for_primary_n(&self, primary_n: R) -> R {
-        let (cvt, at, load) = (self.cvt, self.at, self.load);
-        if !cvt.belt.formulation.by_statics() {
-            return primary_n / at.thrust_ratio;
-        }
-        let compression_n = load.output_torque_nm * at.prepared.inv_secondary_radius;
-        let whole_n = whole_wrap_n(&cvt.belt, compression_n, load.segment_friction);
-        let added_n = added_n(&cvt.belt, at, compression_n);
-        // F_p = x + added (1 - whole/(x + added/2)) for x = tau F_s, or x where the whole wrap is taken up.
-        let less_n = primary_n - added_n * 0.5;
-        let root_n = (less_n * less_n + added_n * whole_n * 4.0).max(0.0).sqrt();
-        let driving_n = (0.5 * (less_n - added_n + root_n)).min(primary_n);
-        // In overrun F_p = tau F_s + added (1 - whole/F_s): the larger root, or tau F_s where the whole wrap is taken up.
-        let sum_n = primary_n - added_n;
-        let root_n = (sum_n * sum_n + 4.0 * at.thrust_ratio * added_n * whole_n)
-            .max(0.0)
-            .sqrt();
-        let overrun_n = (0.5 * (sum_n + root_n)).max(primary_n);
-        compression_n.ge(0.0).select(driving_n, overrun_n) / at.thrust_ratio
     }
 
     /// Slip of a run at a pressure, Pa.

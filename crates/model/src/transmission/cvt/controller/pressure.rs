@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | PC-1 | `map`: p = f(n) (p0 + k u) (r_low/r_p)^a (1 + k_T (80 degC - T)), at most the cap | source: thesis 3.7 in words (rises with ratio, throttle, cold); fitted to 36-40 bar pulling away, 12 bar at 50 km/h |
 //! | PC-2 | f(n) from `slow_factor` at `slow_rpm` to 1 at `full_rpm`, above it less by `fall` per 1000 rpm, never below `slow_factor` | source: thesis 5.3.1 (steep rise to 2000 rpm, very gradual fall in high); fitted, size of the fall ASSUMED |
-//! | PC-3 | `torque_following`: the smaller of F_p and F_s is S \|T\| cos th / (2 mu_cap R_s), F_p by TE-9 under T; above the floors of PC-5, below the cap | source: Coulomb limit VA-4 with safety factor S |
+//! | PC-3 | `torque_following`: F = S \|T\| cos th / (2 mu_cap R_s), thrust ratio of TE-1 below 1 counted, above the floors of PC-5, below the cap | source: Coulomb limit VA-4 with safety factor S |
 //! | PC-4 | `slip_limited`: the lowest pressure between PC-3 with PC-5 and the cap at which belt slip stays below the limit; where none does, that of least slip | derived: slip falls with clamping force until the stretch of the bands (SL-1) outweighs the grip |
 //!
 //! The law is never raised silently: where it is below what the torque needs, the row is flagged `low_clamp`.

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
 //! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only; the printed forms' |
-//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip, and the F_h of TE-9 under the torque | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
+//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
 //!
 //! Valid for clamping forces from zero on; torque above VA-4 is flagged `gross_slip` and slip is bounded (SL-9).
@@ -31,7 +31,7 @@ pub use load::BeltLoad;
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
-pub(in crate::transmission::cvt) use tension::{added_n, holding_n, whole_wrap_n};
+pub(in crate::transmission::cvt) use tension::holding_n;
 
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};
@@ -257,7 +257,7 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(
             at,
-            (holding_n, tension.secondary_clamp_n),
+            (tension.primary_clamp_n, tension.secondary_clamp_n),
             belt.formulation
                 .capacity_friction(mu_segment, load.capacity_friction),
         ),
@@ -322,36 +322,6 @@ pub fn belt_losses<R: Real>(
 #[physics]
 pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     belt_losses(belt, at, load).capacity_nm
-}
-
-/// Torque in drive at the secondary that is its own capacity, Nm, for a clamping force of the secondary: the force of the primary, and with it the
-/// capacity, follows the torque (VA-4, TE-9). The load's own torque is not looked at.
-pub fn carried_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
-    let capacity_nm = |output_torque_nm: f64| {
-        belt_capacity_nm(
-            belt,
-            at,
-            &BeltLoad {
-                output_torque_nm,
-                ..*load
-            },
-        )
-    };
-    let friction = (belt.formulation).capacity_friction(
-        belt.formulation.segment_friction(load.segment_friction),
-        load.capacity_friction,
-    );
-    let most_nm = friction * at.prepared.capacity_m * load.secondary_clamp_n;
-    let (mut low, mut high) = (0.0, most_nm);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if capacity_nm(middle) >= middle {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
 }
 
 /// Solves the belt at one operating point.

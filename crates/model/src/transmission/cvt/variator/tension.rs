@@ -16,10 +16,10 @@
 //! C_x is continuous in T with a bend at C_x = 0. TE-3 and TE-5 are those of the printed forms, TE-7 that of `smooth`. TE-5 needs mu_b beta_p / 2 < 1,
 //! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 //!
-//! TE-9 at a torque of 0.77 of the capacity (mu 0.09 in macro, 0.125 in micro slip) gives F_h/F_s 0.89 in a ratio of 2.4, 1.33 at 1 and 1.89 at
+//! TE-9 at a torque of 0.77 of the capacity (mu 0.09 in macro, 0.125 in micro slip) gives F_h/F_s 0.89 in a ratio of 2.4, 1.32 at 1 and 1.89 at
 //! 0.41, and 0.70, 1 and 1.43 without torque. Measured ratios of other belts are about 1.1, 1.3 and 1.75 (from memory; torque not known). The force in
-//! a_p is the middle of what it can be: within 2 % of the F_p that solves TE-9 with its own, and defined where no force does. Pressures, capacity and the
-//! clamp laws have F_h. Slip, wedging and penetration keep TE-1, with which their constants were found (thesis 8.6): with F_h in SL-4 the slip of the
+//! a_p is the middle of what it can be: within 2 % of the F_p that solves TE-9 with its own, and defined where no force does. The pressures
+//! of the cylinders have F_h. Capacity, clamp laws, slip, wedging and penetration keep TE-1, with which their constants were found (thesis 8.6): with F_h in SL-4 the slip of the
 //! variator rig in low (3 % at 139 Nm and 15 bar) takes a friction of 0.10 in place of 0.125. The step of tension, which adds to C_x or takes from it, is left
 //! out of TE-9: without torque the force is that of TE-1.
 
@@ -94,21 +94,13 @@ fn loaded_share<R: Real>(needed_n: R, clamp_n: R) -> R {
 
 /// Clamping force at which a compression, N, takes up the whole wrap (TE-9).
 #[physics]
-pub(in crate::transmission::cvt) fn whole_wrap_n<R: Real>(
-    belt: &Belt<R>,
-    compression_n: R,
-    mu_segment: R,
-) -> R {
+fn whole_wrap_n<R: Real>(belt: &Belt<R>, compression_n: R, mu_segment: R) -> R {
     compression_n.abs() * belt.cos_wedge / (2.0 * mu_segment)
 }
 
 /// Force that a compression, N, adds to the primary's where its loading pulley has no active arc (TE-9).
 #[physics]
-pub(in crate::transmission::cvt) fn added_n<R: Real>(
-    belt: &Belt<R>,
-    at: &BeltAtRatio<R>,
-    compression_n: R,
-) -> R {
+fn added_n<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, compression_n: R) -> R {
     at.geometry.primary_wrap_rad * compression_n / (4.0 * belt.tan_wedge)
 }
 
