@@ -42,7 +42,7 @@ pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
         number "overall_ratio", "-", "engine speed over wheel speed; empty at standstill", r => r.overall_ratio;
         number "primary_pressure_bar", "bar", "primary pulley pressure", r => bar(r.primary_pressure_pa), Scope::Cvt;
         number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => bar(r.secondary_pressure_pa), Scope::Cvt;
-        words "clamp_cause", "", "what decided the secondary pressure: law, control, clutch, belt, shift_down, shift_up, primary or cap", r => Cell::Text(r.clamp_cause.name().into()), Scope::Cvt;
+        words "clamp_cause", "", "what decided the secondary pressure: law, control, clutch, belt, shift_down, shift_up or cap", r => Cell::Text(r.clamp_cause.name().into()), Scope::Cvt;
         number "slip_percent", "%", "belt slip", r => 100.0 * r.slip, Scope::Cvt;
         number "clamp_safety", "-", "torque capacity of the belt over its torque; empty at zero torque", r => r.clamp_safety, Scope::Cvt;
     };

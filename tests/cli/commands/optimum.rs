@@ -69,8 +69,10 @@ fn the_line_is_a_vehicle_file_with_the_printed_fuel() {
         text.contains("`slip limited` clamps with a safety factor down to"),
         least(2) < least(3)
     );
-    // Torque following with a factor of 1.3 is one of the free clamps. A launch at idle burns less than one by LC-1.
-    assert!(least(3) <= least(1), "{bounds:?}");
+    // Torque following with a factor of 1.3 is one of the free clamps where its slip is within their limit: else it may be below by what the grid
+    // leaves. A launch at idle burns less than one by LC-1.
+    let grid = bounds[3]["tolerance_l_per_100km"].as_f64().unwrap();
+    assert!(least(3) <= least(1) + grid, "{bounds:?}");
     assert!(least(4) < least(0), "{bounds:?}");
     for part in ["idle launch", "launch law", "s below the least speed"] {
         assert!(text.contains(part), "{part} is not in\n{text}");

@@ -80,13 +80,12 @@ fn a_wedge_that_holds_its_segments_is_refused() {
     assert!(try_car(CVT, &set(11.0, 0.195)).is_err());
 }
 
-/// B3: a primary piston of half the area needs more than the line's pressure in high, so that the ratio is not held (HC-4); the Rover's does nowhere.
+/// B3: a primary piston of half the area needs more than the line's pressure in high; the Rover's does nowhere. Nothing else follows.
 #[test]
 fn a_small_primary_piston_is_flagged() {
     let small = nedc(CVT, &["transmission.cvt.variator.primary_piston_cm2=97"]);
     let seconds = |o: &Outcome| o.totals.seconds(Flags::PRIMARY_PRESSURE_SHORT);
-    assert!(seconds(&small) > 100.0, "{} s", seconds(&small));
-    assert!(small.totals.total().fuel_kg > 1.2 * nedc(CVT, &[]).totals.total().fuel_kg);
+    assert!(seconds(&small) > 300.0, "{} s", seconds(&small));
     assert!(seconds(&nedc(CVT, &[])) <= 0.0);
     for row in small.rows.iter().filter(|row| row.speed_m_s > 0.0) {
         let short = row.flags.contains(Flags::PRIMARY_PRESSURE_SHORT);

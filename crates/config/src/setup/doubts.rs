@@ -14,7 +14,9 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Cvt;
-use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Geometry, carried_nm};
+use cvtcycle_model::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, Geometry, belt_capacity_nm,
+};
 
 /// Least road load at 80 km/h over mass, N/kg.
 const LEAST_N_KG: f64 = 0.15;

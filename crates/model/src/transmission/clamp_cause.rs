@@ -17,8 +17,6 @@ pub enum ClampCause {
     ShiftDown,
     /// Shift towards high.
     ShiftUp,
-    /// Force of the primary at a ratio that rests, out of the secondary's pressure.
-    Primary,
     /// The largest pressure.
     Cap,
 }
@@ -36,14 +34,13 @@ impl ClampCause {
     }
 
     /// All causes with their names in files.
-    pub const NAMES: [(ClampCause, &'static str); 8] = [
+    pub const NAMES: [(ClampCause, &'static str); 7] = [
         (ClampCause::Law, "law"),
         (ClampCause::Control, "control"),
         (ClampCause::Clutch, "clutch"),
         (ClampCause::Belt, "belt"),
         (ClampCause::ShiftDown, "shift_down"),
         (ClampCause::ShiftUp, "shift_up"),
-        (ClampCause::Primary, "primary"),
         (ClampCause::Cap, "cap"),
     ];
 

@@ -46,18 +46,6 @@ const SIGNALS: ClampSignals = ClampSignals {
     force_log: 0.0,
 };
 
-/// Force of the primary that holds a ratio under a load for one of the secondary, N (TE-9).
-fn primary_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, secondary_n: f64) -> f64 {
-    let compression_n = load.output_torque_nm / at.geometry.secondary_radius_m;
-    let added_n = at.geometry.primary_wrap_rad * compression_n / (4.0 * cvt.belt.tan_wedge);
-    let whole_n = compression_n.abs() * cvt.belt.cos_wedge / (2.0 * load.segment_friction);
-    let idle_n = at.thrust_ratio * secondary_n;
-    if compression_n < 0.0 {
-        return idle_n + added_n * (1.0 - (whole_n / secondary_n).min(1.0));
-    }
-    idle_n + added_n * (1.0 - (whole_n / (idle_n + 0.5 * added_n)).min(1.0))
-}
-
 /// PC-3: both signs of torque, the least torque, ratios on both sides of 1, and the bounds.
 #[test]
 fn val_torque_following_by_hand() {
@@ -195,14 +183,12 @@ fn val_floors_by_hand() {
                     let weaker = at.thrust_ratio.min(1.0);
                     let need_n = 1.3 * torque.abs().max(1.0) * cvt.belt.cos_wedge
                         / (2.0 * 0.115 * at.geometry.secondary_radius_m * weaker);
-                    let added_n =
-                        primary_n(cvt, &at, &load(torque), need_n) - at.thrust_ratio * need_n;
                     let pa = |force_n: f64| (force_n - own_n) / cvt.secondary_piston_m2;
-                    // Towards high and at rest, the pressure at which the primary's piston just has its force, by bisection.
+                    // Towards high, the pressure at which the primary's piston just has its force, by bisection.
                     let short = |p: f64| {
                         let secondary_n = p * cvt.secondary_piston_m2 + own_n;
                         p * cvt.primary_piston_m2
-                            < (at.thrust_ratio * secondary_n + added_n) * (-force_log).exp()
+                            < at.thrust_ratio * secondary_n * (-force_log).exp()
                     };
                     let (mut low, mut high) = (0.0, 1e9);
                     for _ in 0..200 {
@@ -230,10 +216,6 @@ fn val_floors_by_hand() {
                         (
                             if force_log < 0.0 { high } else { 0.0 },
                             ClampCause::ShiftUp,
-                        ),
-                        (
-                            if force_log == 0.0 { high } else { 0.0 },
-                            ClampCause::Primary,
                         ),
                     ];
                     let (mut want, mut cause) = needs[0];

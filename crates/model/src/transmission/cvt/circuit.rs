@@ -5,7 +5,6 @@
 //! | HC-1 | `line_is_secondary`: p_line = p_s, and the primary is fed from it: p_p <= p_line | source: boxes with one line pressure, that of the secondary (thesis 1.1.2) |
 //! | HC-2 | `independent`: each cylinder has a valve of its own, p_line = max(p_p, p_s) | derived: a valve only lowers a pressure |
 //! | HC-3 | `torque_sensor`: p_c = min(F_p, F_s)/A_c in a clamping cylinder of each pulley, p_d = \|F_p - F_s\|/A_d in the shifting cylinder of one, p_line = max(p_c, p_d) | derived: balance of a double piston (its principle: SAE 2004-40CVT-49) |
-//! | HC-4 | d ln I/dt >= w_p c ln(F_p/(p_line A_p)) where the line is below what the primary needs (HC-1), up to the ratio at which it has enough: the ratio is not held | derived: PC-5 with the force that there is; form: Carbone et al. 2007 |
 //!
 //! F hydraulic forces N: those of TE-9 and VA-3 without spring and centrifugal head. A_c, A_d areas of the two pistons of a pulley, the same on
 //! both. What a shift adds to F_p (PC-5) is not in HC-2 and HC-3. p_p and p_s of the output are then F over the whole piston areas, so that all circuits have the same columns.

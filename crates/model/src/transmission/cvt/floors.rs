@@ -2,15 +2,16 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | PC-5 | p >= each of p_control; p_return + b \|T_out\|/I; (T_0 beta_s/(2 tan th) - F_0)/A_s; (F_need e - F_0)/A_s while shifting towards low; e (tau F_0 + dF)/(A_p - e tau A_s) towards high and at rest (e = 1) where the line is the secondary's (HC-1); F_0 = F_s at p = 0, tau = F_p/F_s without torque, dF what torque adds to F_p (TE-9), e = exp(\|r\|/(w_p c)) | derived: valves; forward clutch; strand that keeps segments in line; shift by creep at rate r of ln I, \|r\| = w_p c \|ln(F_p/F_s) - ln tau\| (form: Carbone et al. 2007); all sizes ASSUMED |
+//! | PC-5 | p >= each of p_control; p_return + b \|T_out\|/I; (T_0 beta_s/(2 tan th) - F_0)/A_s; (F_need e - F_0)/A_s while shifting towards low; tau e F_0/(A_p - tau e A_s) towards high where the line is the secondary's (HC-1); F_0 = F_s at p = 0, tau = F_p/F_s without torque, e = exp(\|r\|/(w_p c)) | derived: valves; forward clutch; strand that keeps segments in line; shift by creep at rate r of ln I, \|r\| = w_p c \|ln(F_p/F_s) - ln tau\| (form: Carbone et al. 2007); all sizes ASSUMED |
 //!
 //! F_need is the force of PC-3. Towards low the primary gives way, but not below what carries the torque, so the secondary presses e times as hard;
-//! towards high the primary has F_p = e (tau F_s + dF) out of the same line pressure, p A_p >= e (tau (p A_s + F_0) + dF); where no pressure does, the cap.
+//! towards high the primary has F_p = tau e F_s out of the same line pressure, p A_p >= tau e (p A_s + F_0); where no pressure does, the cap. What torque
+//! adds to F_p (TE-9) is not raised for.
 //! PC-5 binds PC-3, PC-4 and PC-6; a map was measured with its causes in it, and is held at p_control alone.
 
 use super::Cvt;
 use super::circuit::LineCircuit;
-use super::variator::{BeltAtRatio, BeltLoad, holding_n};
+use super::variator::{BeltAtRatio, BeltLoad};
 use crate::keys::{Values, keys};
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
@@ -68,16 +69,15 @@ pub(super) struct Held<'a, R: Real = f64> {
 #[physics]
 impl<R: Real> Held<'_, R> {
     /// The pressure that each cause needs, Pa (PC-5).
-    fn each_pa(&self) -> [(R, ClampCause); 6] {
+    fn each_pa(&self) -> [(R, ClampCause); 5] {
         let (cvt, floors) = (self.cvt, &self.cvt.floors);
         let zero = self.own_n.splat(0.0);
         let primary_nm = self.load.output_torque_nm.abs() * self.at.geometry.inv_ratio;
         let strands_n = floors.strand_n * self.at.geometry.secondary_wrap_rad;
         let (mut down_pa, mut up_pa) = (zero, zero);
-        let moves = zero.gt(self.force_log);
         let down = self.force_log.gt(0.0);
         let up = match cvt.circuit {
-            LineCircuit::LineIsSecondary => !down,
+            LineCircuit::LineIsSecondary => zero.gt(self.force_log),
             LineCircuit::Independent | LineCircuit::TorqueSensor { .. } => zero.gt(zero),
         };
         if down.any() {
@@ -85,12 +85,11 @@ impl<R: Real> Held<'_, R> {
             down_pa = down.select(pressed_pa, zero);
         }
         if up.any() {
-            let (tau, pressed) = (self.at.thrust_ratio, (-self.force_log).exp());
-            let left_m2 = cvt.primary_piston_m2 - pressed * tau * cvt.secondary_piston_m2;
+            let ratio = self.at.thrust_ratio * (-self.force_log).exp();
+            let left_m2 = cvt.primary_piston_m2 - ratio * cvt.secondary_piston_m2;
             let enough = left_m2.gt(0.0);
             let most = zero.splat(f64::INFINITY);
-            let own_n = pressed * (tau * self.own_n + self.added_n());
-            let pressed_pa = enough.select(own_n / left_m2, most);
+            let pressed_pa = enough.select(ratio * self.own_n / left_m2, most);
             up_pa = up.select(pressed_pa, zero);
         }
         [
@@ -104,21 +103,8 @@ impl<R: Real> Held<'_, R> {
                 ClampCause::Belt,
             ),
             (down_pa, ClampCause::ShiftDown),
-            (moves.select(up_pa, zero), ClampCause::ShiftUp),
-            (moves.select(zero, up_pa), ClampCause::Primary),
+            (up_pa, ClampCause::ShiftUp),
         ] // PC-5
-    }
-
-    /// Force that the torque adds to that of the primary at the force of the secondary that it needs, N (TE-9).
-    fn added_n(&self) -> R {
-        let (belt, at, load) = (&self.cvt.belt, self.at, self.load);
-        if belt.thrust_ratio.is_some() || !belt.formulation.by_statics() {
-            return self.own_n.splat(0.0);
-        }
-        let compression_n = load.output_torque_nm * at.prepared.inv_secondary_radius;
-        let idle_n = at.thrust_ratio * self.need_n;
-        let clamps = (self.need_n, idle_n);
-        holding_n(belt, at, clamps, compression_n, load.segment_friction) - idle_n
     }
 
     /// Pressure for a force, Pa.

@@ -189,8 +189,6 @@ pub struct Shifting<R: Real = f64> {
     pub direction: R::PerLane<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
     pub share: R,
-    /// Logarithm of the force that the primary needs over what the line gives it, above zero where that is short (HC-4).
-    pub short_log: R,
 }
 
 impl<R: Real> CvtState<R> {
@@ -203,7 +201,6 @@ impl<R: Real> CvtState<R> {
             shifting: Shifting {
                 direction: R::per_lane(|_| 0),
                 share: like.splat(0.0),
-                short_log: like.splat(0.0),
             },
             hold: None,
         }

@@ -82,7 +82,6 @@ fn shift<P: PrimeMover<R>, R: Real>(
             kept: Shifting {
                 share,
                 direction: kept.direction.clone(),
-                short_log: kept.short_log,
             },
         }; // RC-4
     }
@@ -120,11 +119,6 @@ fn shift<P: PrimeMover<R>, R: Real>(
         ), // RC-12
         None => cvt.ratio.step(&demand),
     };
-    let free = matches!(held, None | Some(Hold { paced: true, .. }));
-    let (ratio, change) = match free && kept.short_log.gt(0.0).any() {
-        true => not_held(cvt, before, (ratio, change), kept.short_log, &demand),
-        false => (ratio, change),
-    };
     let volume = change.gt(0.0).select(down_m3 * change, -up_m3 * change);
     let per_s = input.dt_s.recip();
     Shift {
@@ -135,45 +129,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
         kept: Shifting {
             direction: direction_after(change, &kept.direction),
             share,
-            short_log: zero,
         },
     }
-}
-
-/// Change of ln I towards low at which F_p/F_s without torque has fallen by a logarithm: there the belt rests again.
-#[physics]
-#[physics]
-fn enough_log<R: Real>(cvt: &Cvt<R>, before: &Geometry<R>, short_log: R) -> R {
-    let wraps = |g: &Geometry<R>| g.primary_wrap_rad / g.secondary_wrap_rad;
-    let (centre_m, length_m) = (cvt.belt.centre_distance_m, cvt.belt.length_m);
-    let next = Geometry::new(before.ratio * PROBE, centre_m, length_m);
-    let fall = (wraps(before) / wraps(&next)).ln() / LN_PROBE;
-    short_log / fall
-}
-
-/// A ratio over another one, between which the slope of F_p/F_s is taken, and its logarithm.
-const PROBE: f64 = 1.01;
-const LN_PROBE: f64 = 0.009_950_330_853_168_083;
-
-/// A ratio and the change of ln I to it, where the force of the primary before the step, short by a logarithm, lets the belt go towards low (HC-4).
-#[physics]
-#[cold]
-fn not_held<R: Real>(
-    cvt: &Cvt<R>,
-    before: &Geometry<R>,
-    (ratio, change): (R, R),
-    short_log: R,
-    demand: &RatioDemand<R>,
-) -> (R, R) {
-    let creep = demand.primary_rad_s * cvt.floors.creep_per_rad * short_log * demand.dt_s;
-    let to_low = (cvt.ratio.low / before.ratio).ln();
-    let drift = creep.min(enough_log(cvt, before, short_log)).min(to_low);
-    let drift = drift.max(0.0); // HC-4
-    let drifts = short_log.gt(0.0) & drift.gt(change);
-    (
-        drifts.select(before.ratio * drift.exp(), ratio),
-        drifts.select(drift, change),
-    )
 }
 
 /// Powers of a step.

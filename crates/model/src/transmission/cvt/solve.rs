@@ -417,19 +417,6 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
             output,
         );
         *shifting = step.shifting;
-        shifting.short_log = short_log(cvt, output);
         return;
-    }
-}
-
-/// Logarithm of the force that the primary needs over what the line gives it, 0 where that is enough (HC-4).
-#[physics]
-fn short_log<R: Real>(cvt: &Cvt<R>, output: &StepOutput<R>) -> R {
-    let most_pa = cvt.most_primary_pa(output.secondary_pa);
-    let short = output.primary_pa.gt(most_pa);
-    let none = most_pa.splat(0.0);
-    match short.any() {
-        true => short.select((output.primary_pa / most_pa).ln(), none),
-        false => none,
     }
 }

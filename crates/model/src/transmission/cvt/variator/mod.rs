@@ -31,7 +31,6 @@ pub use load::BeltLoad;
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
-pub(in crate::transmission::cvt) use tension::holding_n;
 
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};

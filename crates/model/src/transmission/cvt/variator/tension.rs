@@ -106,7 +106,7 @@ fn added_n<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, compression_n: R) -> R 
 
 /// Clamping force of the primary that holds a ratio for that of the secondary, `idle_n` its part without torque, and a compression, N (TE-9).
 #[physics]
-pub(in crate::transmission::cvt) fn holding_n<R: Real>(
+fn holding_n<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
     (secondary_n, idle_n): (R, R),
