@@ -136,7 +136,7 @@ impl CalibrateArgs {
                 self.plan.join(" "),
                 "logs are named alone, plans one by one",
             );
-            let message = "a plan stands alone";
+            let message = "a plan is given alone";
             problems.add(bad_value("PLAN", &all, "one plan, or logs", message, hint));
         }
     }

@@ -214,7 +214,7 @@ impl Execute for ShowArgs {
     }
 }
 
-/// What was measured of a fluid's friction, contact by contact, and doubts about its tables.
+/// Measured friction of a fluid, contact by contact, and doubts about its tables.
 fn friction(known: &[KnownContact], doubts: &[String]) -> String {
     let mut text = String::from("\nFriction by contact:\n");
     for own in known {

@@ -211,7 +211,7 @@ fn a_log_says_what_it_cannot_tell() {
         ),
         (
             &["calibrate", "rover_216_warm_up", "rover_216_transmission"][..],
-            "a plan stands alone",
+            "a plan is given alone",
         ),
         (
             &["calibrate", "drive.csv", "--seed", "3"][..],
@@ -271,7 +271,7 @@ fn a_drive_starts_with_the_temperatures_of_its_log() {
 
 /// Truth: the log of the car itself, so that both lines are one.
 #[test]
-fn a_report_draws_the_log_beside_the_computed_car() {
+fn a_report_draws_the_log_next_to_the_computed_car() {
     let dir = tempfile::tempdir().unwrap();
     own_log(dir.path(), "udds", &[]);
     let words = [
@@ -311,7 +311,7 @@ fn a_report_draws_the_log_beside_the_computed_car() {
         String::from_utf8_lossy(&output.stderr)
     );
     let page = fs::read_to_string(dir.path().join("page.html")).unwrap();
-    for part in ["The log beside the computed car", "Transmission sump"] {
+    for part in ["The log next to the computed car", "Transmission sump"] {
         assert!(page.contains(part), "{part}");
     }
 }

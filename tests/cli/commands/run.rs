@@ -401,7 +401,7 @@ fn a_comparison_of_oils_notes_the_friction_it_changes() {
         );
         let output = run_in(dir.path(), &[&words[..], &["--json"]].concat());
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
-        // What is not measured with an oil is a note in any case.
+        // Contacts that are not measured with an oil are a note in any case.
         let notes = summary["runs"][0]["notes"].to_string();
         assert_eq!(notes.contains(note), says, "{oil}: {notes}");
     }

@@ -327,7 +327,7 @@ fn a_fluid_says_what_was_measured() {
         .into_iter()
         .find(|note| *note == words);
     assert!(note.is_some());
-    // The car's own fluid, not asked for: no note.
+    // A car with its own fluid has no note.
     let own = load(CARS[0], &Options::default()).unwrap();
     assert!(
         own.notes
@@ -385,7 +385,7 @@ fn tables_are_doubted() {
 
 /// A path of a table is taken from the folder of the fluid's own file, wherever the car is.
 #[test]
-fn a_table_lies_beside_its_fluid() {
+fn a_table_lies_next_to_its_fluid() {
     let folder = std::env::temp_dir().join(format!("cvtcycle_fluids_{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own_fluid");

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | known from |
 //! |---|---|---|
-//! | CL-12 | drive: median engine speed in bands of the power at the wheels over rated power (mean with the second before, within 4 %, or a third of itself, of that two seconds before), at its median; warm car, above 30 km/h, ratio 3 % off its ends, engine speed within 5 % of the second before | definition: RC-13 asks for engine speed over that share; power by the car on the drive of the log |
+//! | CL-12 | drive: median engine speed in bands of the power at the wheels over rated power (mean with the second before, within 4 %, or a third of itself, of that two seconds before), at its median; warm car, above 30 km/h, ratio 3 % off its ends, engine speed within 5 % of the second before | definition: RC-13 has engine speed over that share; power by the car on the drive of the log |
 //! | CL-13 | overrun: the same in bands of road speed while the wheels give power | definition: RC-13 |
 //! | CL-14 | share of the variance about the line that a straight line over road speed explains | definition |
 

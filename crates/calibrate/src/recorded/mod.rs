@@ -2,7 +2,7 @@
 //!
 //! A calibration searches for values with which the model agrees with data. A log has engine speed, speed, fuel and temperatures next to each other, so that
 //! these quantities can be read from it directly: no search, no prior, and no other part of the model has to be right. Only what needs a power or a heat
-//! asks the car: the power at the wheels of its drive over the log, and how fast its own coolant warms on it.
+//! takes the car: the power at the wheels of its drive over the log, and how fast its own coolant warms on it.
 //!
 //! | file | content |
 //! |---|---|
@@ -47,7 +47,7 @@ pub struct RecordedLog {
 pub struct KnownCar {
     /// Name or path.
     pub word: String,
-    /// Its values.
+    /// Values at the log's times.
     pub values: ParamSet,
 }
 
@@ -198,7 +198,7 @@ impl Found<'_> {
 /// Reads what the logs of a car tell of it.
 ///
 /// # Errors
-/// The car does not take a heat capacity that its warm-up asks for.
+/// The car does not take a heat capacity that its warm-up needs.
 pub fn estimate(question: &Question) -> Result<Findings, Problems> {
     let setup = question
         .car

@@ -43,7 +43,7 @@ pub struct Column {
     /// True if it is a column of its group in another unit, which lists of the columns leave out.
     pub is_alias: bool,
     /// True of a column that says something of the value of a table, and spans no axis of its grid.
-    pub is_beside: bool,
+    pub is_extra: bool,
 }
 
 impl Column {
@@ -59,15 +59,15 @@ impl Column {
             allowed: "",
             hint: "",
             is_alias: false,
-            is_beside: false,
+            is_extra: false,
         }
     }
 
     /// The column says something of the value of a table.
     #[must_use]
-    pub fn beside(self) -> Self {
+    pub fn extra(self) -> Self {
         Column {
-            is_beside: true,
+            is_extra: true,
             ..self
         }
     }

@@ -183,8 +183,8 @@ pub(crate) fn file_table(
             true => column,
             false => column.alias(),
         };
-        let column = match own.is_beside {
-            true => column.beside(),
+        let column = match own.is_extra {
+            true => column.extra(),
             false => column,
         };
         // A cell of a matrix without a value is a hole where there may be some.

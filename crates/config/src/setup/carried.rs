@@ -109,7 +109,7 @@ impl CarriedCar {
                 let Ok(bytes) = disk.read(path) else {
                     continue; // it has been read: gone since
                 };
-                // Beside the fluid's file, under a name of its own.
+                // Next to the fluid's file, under a name of its own.
                 let name = Path::new(path).file_name().unwrap_or_default();
                 let name = format!("{number}_{}", name.to_string_lossy());
                 for quote in ['"', '\''] {

@@ -49,7 +49,7 @@ pub(super) struct Frame {
     /// Names or paths of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
     files: TableCache,
-    /// Where the tables are that the fluids' files name: beside them.
+    /// Where the tables are that the fluids' files name: next to them.
     fluid_files: [TableCache; 2],
     formulation: Formulation,
     /// Friction of the vehicle's own transmission oil where another oil is in its place.

@@ -33,7 +33,7 @@ pub struct FileColumn {
     /// Name of the column that gives the same quantity in the program's own unit: in the rows it has that name. Empty for that column itself.
     pub is_like: &'static str,
     /// True of a column that says something of the value, such as its scatter, and spans no axis of a grid.
-    pub is_beside: bool,
+    pub is_extra: bool,
 }
 
 impl FileColumn {
@@ -46,15 +46,15 @@ impl FileColumn {
             group,
             required: true,
             is_like: "",
-            is_beside: false,
+            is_extra: false,
         }
     }
 
     /// The column, which says something of the value.
     #[must_use]
-    pub const fn beside(self) -> Self {
+    pub const fn extra(self) -> Self {
         FileColumn {
-            is_beside: true,
+            is_extra: true,
             ..self
         }
     }

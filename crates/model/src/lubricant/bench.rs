@@ -30,7 +30,7 @@ pub static FRICTION_TABLE: FileTable = FileTable {
         FileColumn::new("temp_degc", "temperature", Bound::closed(-60.0, 200.0)),
         FileColumn::new("sd", "scatter", Bound::closed(0.0, 0.5))
             .or_none()
-            .beside(),
+            .extra(),
         FileColumn::new("friction", "friction", Bound::open_low(0.0, 1.0)),
     ],
     rises_with: None,
@@ -79,7 +79,7 @@ pub struct BenchRow {
     pub temp_k: f64,
     /// Friction.
     pub friction: f64,
-    /// Its scatter, one standard deviation; 0 where the table has none.
+    /// Scatter of the friction, one standard deviation; 0 where the table has none.
     pub sd: f64,
 }
 
@@ -99,7 +99,7 @@ pub fn bench_rows(table: &FileRows) -> Vec<BenchRow> {
     table.rows.iter().map(row).collect()
 }
 
-/// What a table says of a contact.
+/// Curve and scatter of a contact by its table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bench {
     /// The contact.
@@ -446,7 +446,7 @@ impl Data<'_> {
 
     fn criterion(&self, of: &Best) -> f64 {
         let (n, k) = (self.rows.len() as f64, of.free as f64 + 1.0);
-        // What rounding leaves of an exact fit.
+        // An exact fit leaves a sum of rounding size, whose logarithm would decide.
         let mean = (of.sum / n).max(1e-12);
         n * ln(mean) + 2.0 * k * n / (n - k - 1.0).max(0.5) // FR-5
     }

@@ -89,7 +89,7 @@ impl Contact {
 pub struct ContactCurve<R: Real = f64> {
     /// Boundary friction at 85 degC.
     pub boundary: R,
-    /// Its rise with temperature, 1/K.
+    /// Rise of the boundary friction with temperature, 1/K.
     pub rise_per_k: R,
     /// Friction where the film carries all.
     pub film: R,

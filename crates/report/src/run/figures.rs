@@ -73,7 +73,7 @@ fn log_section(found: &RunResults) -> Option<Section> {
     let summary = &found.summary;
     let (recording, car) = summary.recording.as_ref().zip(summary.runs.first())?;
     let picture = logged(recording, car.label(), &conditions(found))?;
-    let mut section = Section::new("log", "The log beside the computed car");
+    let mut section = Section::new("log", "The log next to the computed car");
     section.figure(
         "log",
         format!(

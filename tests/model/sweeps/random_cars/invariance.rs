@@ -242,7 +242,7 @@ fn units_of_the_table_do_not_matter() {
                 sums(&keep.rows)
             };
             let plain = run(SPEEDS[0], GRADES[0]);
-            // A car whose ratio stands on a threshold goes either way by the last bit, and is no case for this test.
+            // A car whose ratio is at a threshold goes either way by the last bit, and is no case for this test.
             let nudges: [Write; 2] = [|x| x * (1.0 + 3e-16), |x| x * (1.0 - 3e-16)];
             for nudged in nudges {
                 let near = run(("speed_kmh", nudged), GRADES[0]);

@@ -309,7 +309,7 @@ fn full(
     let axes: Vec<(usize, &str)> = columns
         .iter()
         .enumerate()
-        .filter(|(_, column)| !is_value(schema, **column) && !schema.columns[**column].is_beside)
+        .filter(|(_, column)| !is_value(schema, **column) && !schema.columns[**column].is_extra)
         .map(|(k, column)| (k, &*schema.columns[*column].name))
         .collect();
     let mut lines: HashMap<Vec<u64>, usize> = HashMap::new();

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | HC-1 | `line_is_secondary`: p_line = p_s, and the primary is fed from it: p_p <= p_line | source: boxes with one line pressure, that of the secondary (thesis 1.1.2) |
+//! | HC-1 | `line_is_secondary`: p_line = p_s, and the primary is fed from it: p_p <= p_line | ASSUMED: thesis 1.1.2 has a valve that sets the secondary pressure and one that meters oil into the primary, not where that oil is from |
 //! | HC-2 | `independent`: each cylinder has a valve of its own, p_line = max(p_p, p_s) | derived: a valve only lowers a pressure |
 //! | HC-3 | `torque_sensor`: p_c = min(F_p, F_s)/A_c in a clamping cylinder of each pulley, p_d = \|F_p - F_s\|/A_d in the shifting cylinder of one, p_line = max(p_c, p_d) | derived: balance of a double piston (its principle: SAE 2004-40CVT-49) |
 //!

@@ -24,7 +24,7 @@ pub struct PulleyBearing<R: Real = f64> {
     pub bore_m: [R; 2],
     /// Torque of the secondary's shaft without load, Nm.
     pub idle_nm: R,
-    /// Its slope over speed at reference viscosity, Nm s/rad.
+    /// Slope of that torque over speed at reference viscosity, Nm s/rad.
     pub idle_nm_s: R,
 }
 

@@ -1,4 +1,4 @@
-//! Quantities of a log over time, beside the computed ones.
+//! Quantities of a log over time, next to the computed ones.
 
 use crate::charts::lines::{LineChart, LinePanel, Look, line_chart};
 use crate::charts::picture::Picture;

@@ -19,8 +19,8 @@
 //! TE-9 at a torque of 0.77 of the capacity (mu 0.09 in macro, 0.125 in micro slip) gives F_h/F_s 0.89 in a ratio of 2.4, 1.32 at 1 and 1.89 at
 //! 0.41, and 0.70, 1 and 1.43 without torque. Measured ratios of other belts are about 1.1, 1.3 and 1.75 (from memory; torque not known). The force in
 //! a_p is the middle of what it can be: within 2 % of the F_p that solves TE-9 with its own, and defined where no force does. The pressures
-//! of the cylinders have F_h. Capacity, clamp laws, slip, wedging and penetration keep TE-1, with which their constants were found (thesis 8.6): with F_h in SL-4 the slip of the
-//! variator rig in low (3 % at 139 Nm and 15 bar) takes a friction of 0.10 in place of 0.125. The step of tension, which adds to C_x or takes from it, is left
+//! of the cylinders have F_h. Capacity, clamp laws, slip, wedging and penetration keep TE-1, with which their constants were found (thesis 8.6): with F_h in SL-4 the rig's slip of 3 % at
+//! 139 Nm and 15 bar in low is not reached with a friction of 0.125: it would have to fall as F_h rises over TE-1, by a fifth (estimate). The step of tension, which adds to C_x or takes from it, is left
 //! out of TE-9: without torque the force is that of TE-1.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
