@@ -293,6 +293,11 @@ impl ComparisonArgs {
         named
     }
 
+    /// True if nothing is to be compared.
+    pub fn has_none(&self) -> bool {
+        self.baseline.iter().any(|name| name == "none")
+    }
+
     /// Baselines of the options without `none`.
     pub fn named_baselines(&self) -> impl Iterator<Item = &String> {
         self.baseline.iter().filter(|name| *name != "none")

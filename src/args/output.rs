@@ -75,6 +75,14 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
+    /// Problems only.
+    pub fn silent() -> OutputArgs {
+        OutputArgs {
+            json: JsonArgs { json: false },
+            quiet: true,
+        }
+    }
+
     /// True if a JSON object is printed.
     pub fn json(&self) -> bool {
         self.json.json

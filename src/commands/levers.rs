@@ -3,7 +3,7 @@
 use clap::Args;
 use cvtcycle::analysis::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::setup::{Kind, Options, is_path};
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::output::summary::start_on;
 use cvtcycle::study::Study;
@@ -133,7 +133,12 @@ impl LeversArgs {
             cycle: self.cycle.word.clone(),
             start: start.1.text(),
             dt_s: dt_s?,
-            engine_oil: self.engine_oil.clone(),
+            base: Options {
+                engine_oil: self.engine_oil.clone(),
+                ..Options::default()
+            },
+            set_all: Vec::new(),
+            others: Vec::new(),
             draws: draws?,
             combine: combine?,
             heard_rpm: heard_rpm?,

@@ -1,25 +1,42 @@
 //! `report`: a directory of results to a document for a design review.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ColorChoice};
+use cvtcycle::analysis::answer::{self, Answer};
 use cvtcycle::report::document::Document;
-use cvtcycle::report::report;
+use cvtcycle::report::{Drives, report_with};
 use cvtcycle::report::whatif::{LiveSection, section_of_dir};
 use cvtcycle::report::write::{Form, Target};
 
+use super::run::RunArgs;
+use super::vehicles::ComparedArgs;
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{Names, ResultArgs, choice_names, one_of};
+use crate::args::{AmbientArgs, DrivingArgs, Names, ResultArgs, choice_names, one_of};
+use crate::print::progress::Progress;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
+use cvtcycle::study::Study;
+use tempfile::TempDir;
+
+/// Options of the run that a report is made of, where no directory is given.
+const RUN_OPTIONS: [&str; 13] = [
+    "vehicle", "lubricant", "set", "cycle", "baseline", "engine_oil", "set_all", "columns", "repair", "ambient", "start", "dt",
+    "formulation",
+];
 
 /// Arguments of `report`.
 #[derive(Args, Clone, Debug)]
 #[command(
-    mut_arg("out", |out| out.value_name("FILE").help("Report file [default: report.html in the (first) directory]; figures go to the folder NAME_figures next to it")),
+    mut_arg("out", |out| out.value_name("FILE").help("Report file [default: report.html in the (first) directory, without one in the current directory]; figures go to the folder NAME_figures next to it")),
+    mut_args(|arg| match RUN_OPTIONS.contains(&arg.get_id().as_str()) {
+        true => arg.conflicts_with("dirs").help_heading("Run to report on, without DIR"),
+        false => arg,
+    }),
     after_help = "\
 Examples:
+  cvtcycle report --vehicle mycar.toml --cycle wltc --ambient -7
   cvtcycle run --ambient -10 --out cold
   cvtcycle report cold
   cvtcycle run --ambient -10 --set transmission.cvt.belt.band_offset_mm=2 --out offset_2mm
@@ -27,14 +44,26 @@ Examples:
   cvtcycle study ambient --out matrix
   cvtcycle report cold --with matrix --force
 
+Without DIR, and for the directory of a run without a study of levers, the report computes ranges, price of each loss, options, risk and \
+next test from 256 draws of the uncertain values, the same for all of its cars (some 12 000 drives); --stored leaves that out.
+
 The page loads nothing and works without scripts; with scripts, pointing at a figure shows its numbers. Results of studies and \
 of `validate --out` in folders of DIR are included. Exit code 1: the report was written, but data for it were missing (a trace, \
 a part of a study); 2: bad input."
 )]
 pub struct ReportArgs {
     /// Directory written by `run --out` or `study --out`; with two runs, B is compared with A
-    #[arg(value_name = "DIR", required = true, num_args = 1..=2)]
+    #[arg(value_name = "DIR", num_args = 0..=2)]
     dirs: Vec<PathBuf>,
+    #[command(flatten)]
+    cars: ComparedArgs,
+    #[command(flatten)]
+    ambient: AmbientArgs,
+    #[command(flatten)]
+    driving: DrivingArgs,
+    /// Only what the directory holds: no draws, no options
+    #[arg(long)]
+    stored: bool,
     /// Directory of a study or validation to include; repeatable
     #[arg(long, value_name = "DIR")]
     with: Vec<PathBuf>,
@@ -72,11 +101,48 @@ impl ReportArgs {
     }
 }
 
+impl ReportArgs {
+    /// Runs the car of the options into a temporary directory. `None` after a problem.
+    fn run_of_options(&self, problems: &mut Problems) -> Option<TempDir> {
+        let dir = tempfile::tempdir().map_err(|error| {
+            let message = format!("cannot make a temporary directory: {error}");
+            problem("report", &message, "name another by the variable TMPDIR")
+        });
+        let dir = problems.take(dir)?;
+        let run = RunArgs::for_report(
+            self.cars.clone(),
+            self.ambient.clone(),
+            self.driving.clone(),
+            &dir.path().join("run"),
+        );
+        let plan = run.plan(problems)?;
+        // Failed checks are in the report.
+        problems.take(run.run(plan, Terminal::new(ColorChoice::Never)))?;
+        Some(dir)
+    }
+
+    /// Drives the draws of a run's question.
+    fn drive(&self, study: &Study) -> Result<Option<Answer>, Problems> {
+        let progress = Progress::counted("runs", study.runs(), self.results.output.quiet);
+        let answer = answer::drive(study, &progress);
+        progress.finish();
+        answer
+    }
+}
+
 impl Execute for ReportArgs {
     type Plan = (Document, Target);
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         problems.take(threads::begin(None));
+        let temporary = match self.dirs.is_empty() {
+            true => Some(self.run_of_options(problems)?),
+            false => None,
+        };
+        let dirs = match &temporary {
+            Some(dir) => vec![dir.path().join("run")],
+            None => self.dirs.clone(),
+        };
         let out = self.results.out.out.as_deref();
         let form = match &self.format {
             Some(word) => problems.take(one_of("--format", word, &Form::NAMES)),
@@ -85,21 +151,24 @@ impl Execute for ReportArgs {
         let form = form.or_else(|| out.and_then(Form::from_path));
         let form = form.unwrap_or(Form::Html);
         let fits = !self.live || self.check_live(form, problems);
-        let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
+        let drives = |study: &Study| self.drive(study);
+        let drives: Option<Drives> = (!self.stored).then_some(&drives);
+        let document = report_with(&dirs, &self.with, self.cover.as_deref(), drives);
+        let document = problems.take(document);
         let file = match out {
             Some(file) => file.to_path_buf(),
             // An unreadable directory would be reported a second time through the file in it.
             None if document.is_none() => return None,
-            None => self
-                .dirs
-                .first()?
-                .join(format!("report.{}", form.endings()[0])),
+            None => {
+                let dir = self.dirs.first().map_or(Path::new(""), PathBuf::as_path);
+                dir.join(format!("report.{}", form.endings()[0]))
+            }
         };
         let target = problems.take(Target::new(&file, form, self.results.out.force));
         let mut document = document?.shown(self.full);
         if self.live && fits {
             let first_figure = document.figures().count() + 1;
-            let live: LiveSection = problems.take(section_of_dir(&self.dirs[0], first_figure))?;
+            let live: LiveSection = problems.take(section_of_dir(&dirs[0], first_figure))?;
             document.live = Some(live);
         }
         Some((document, target?))

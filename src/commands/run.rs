@@ -7,11 +7,14 @@ mod tables;
 pub use tables::failures;
 
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use clap::Args;
 use cvtcycle::analysis::run::{RunQuestion, summary};
-use cvtcycle::analysis::words::drawn::{differences, prepare};
+use cvtcycle::analysis::answer::{Question, drive, prepare};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::config::Problems;
+use cvtcycle::config::setup::{TWIN, is_twin};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
@@ -83,6 +86,9 @@ pub struct RunArgs {
     output: OutputArgs,
 }
 
+/// Draws of a change where none are asked for: as many as give its ends a range of their own (ES-3).
+const DRAWS_OF_CHANGE: u64 = 72;
+
 /// Checked input of a run.
 pub struct RunPlan {
     cars: ComparedVehicles,
@@ -95,6 +101,30 @@ pub struct RunPlan {
 }
 
 impl RunArgs {
+    /// Arguments of the run behind a report, written to a directory.
+    pub fn for_report(
+        cars: ComparedArgs,
+        ambient: AmbientArgs,
+        driving: DrivingArgs,
+        dir: &Path,
+    ) -> RunArgs {
+        RunArgs {
+            cars,
+            ambient,
+            driving,
+            price: When::Auto.name().to_owned(),
+            draws: None,
+            strict: false,
+            out: OutArgs {
+                out: Some(dir.to_path_buf()),
+                force: true,
+            },
+            format: TraceFormat::NAMES[0].0.to_owned(),
+            sensitivity: When::Auto.name().to_owned(),
+            output: OutputArgs::silent(),
+        }
+    }
+
     /// Plan of this run for its draws.
     fn base(
         &self,
@@ -102,7 +132,7 @@ impl RunArgs {
         vehicles: &[RunVehicle],
         problems: &mut Problems,
     ) -> Option<Base> {
-        let (_, baselines) = vehicles.split_first()?;
+        let baselines = &vehicles[vehicles.len().min(1)..];
         let ComparedArgs {
             car,
             comparison,
@@ -120,11 +150,16 @@ impl RunArgs {
             problems.add(problem("--draws", message, hint));
             return None;
         }
-        let named = comparison.named_baselines();
-        let named: Vec<String> = named.map(|name| word_for_plan(name)).collect();
+        // The car before its change is no baseline: the question adds it.
+        let others = baselines.iter().filter(|car| !car.is_unchanged);
+        let others = others.filter(|_| self.draws.is_some());
+        let words = others.map(|car| match is_twin(&car.word) {
+            true => TWIN.to_owned(),
+            false => word_for_plan(&car.word),
+        });
         Some(Base {
             vehicle: word_for_plan(&car.vehicle),
-            baselines: (!named.is_empty()).then_some(named),
+            baselines: Some(words.collect()),
             cycle: word_for_plan(&comparison.cycle.word),
             ambient_degc,
             start: start.text(),
@@ -158,12 +193,14 @@ impl Execute for RunArgs {
             problems.take(threads::begin(None));
         }
         let wanted = count_if_given("--draws", self.draws.as_ref(), DRAWS, problems);
+        let is_changed = cars.vehicles.iter().any(|car| car.is_unchanged);
+        let is_drawn = is_changed && self.cars.columns.columns.is_none();
+        let wanted = wanted.or((is_drawn && self.draws.is_none()).then_some(DRAWS_OF_CHANGE));
         let draws = match (wanted, ambient, &start, dt_s) {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
                 let how = (degc, start, dt_s, cars.formulation);
                 let base = self.base(how, &cars.vehicles, problems);
-                let is_cvt = cars.vehicles[0].setup.transmission().is_cvt();
-                base.and_then(|base| problems.take(prepare(base, n, is_cvt)))
+                base.and_then(|base| problems.take(prepare(&Question::differences(base, n))))
             }
             _ => None,
         };
@@ -200,12 +237,13 @@ impl Execute for RunArgs {
             start: plan.cars.start.1.clone(),
             settings: plan.cars.settings(&self.cars, self.strict),
             price: plan.price.wanted(cycle, plan.cars.dt_s),
+            has_unchanged: vehicles.iter().any(|car| car.is_unchanged),
             published: Some(published),
         };
         let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {
-            let drawn = differences(study)?;
-            for (comparison, drawn) in summary.comparison.iter_mut().zip(drawn) {
+            let drawn = drive(study, &NoProgress)?.map_or_else(Vec::new, |answer| answer.differences);
+            for (comparison, (_, drawn)) in summary.comparison.iter_mut().zip(drawn) {
                 comparison.interval = Some(drawn);
             }
         }

@@ -24,6 +24,8 @@ pub struct RunVehicle {
     pub word: String,
     /// Options of its reading.
     pub options: Options,
+    /// True for the subject before the changes of its user.
+    pub is_unchanged: bool,
 }
 
 /// Vehicles to compare, and their cycle.
@@ -211,7 +213,18 @@ pub fn load(
         named_by,
         ..baseline
     };
+    // What the user changes is compared with the car of its file, which may be none without them.
+    let is_changed = car.lubricant.is_some() || !car.set.is_empty();
+    let is_wanted = baselines == Baselines::OfFile && !comparison.has_none();
+    let unchanged = (is_changed && is_wanted && setup.is_some())
+        .then(|| setup::load(&car.vehicle, &baseline).ok())
+        .flatten();
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
+    let has_unchanged = unchanged.is_some();
+    loaded.extend(unchanged.map(|mut setup| {
+        setup.short += " as it is";
+        (&car.vehicle, Some(setup), baseline.clone())
+    }));
     // Derives a twin from the subject with its overrides.
     let twin = subject.of_twin(named_by);
     let load_baseline = |name: &String| {
@@ -236,11 +249,17 @@ pub fn load(
     let mut vehicles: Vec<RunVehicle> = Vec::new();
     for (word, setup, options) in loaded {
         let Some(setup) = setup else { continue };
+        let is_unchanged = has_unchanged && vehicles.len() == 1;
+        let name = match is_unchanged {
+            true => "unchanged".to_owned(),
+            false => setup.name.clone(),
+        };
         vehicles.push(RunVehicle {
-            name: unique(&setup.name, &vehicles),
+            name: unique(&name, &vehicles),
             setup,
             word: word.clone(),
             options,
+            is_unchanged,
         });
     }
     vehicles

@@ -5,7 +5,7 @@ use cvtcycle_config::setup::start_of_log;
 use cvtcycle_model::drive::{Conditions, Row, drive};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{
-    Driven, MeasuredSummary, Over, RunSummary, Settings, StartWord, Summary, find_maps_left,
+    Driven, MeasuredSummary, Over, UNCHANGED, RunSummary, Settings, StartWord, Summary, find_maps_left,
     summarise,
 };
 
@@ -28,6 +28,8 @@ pub struct RunQuestion<'a> {
     pub settings: Settings,
     /// True to drive each car again without each loss, for the price of that loss in fuel.
     pub price: bool,
+    /// True if the first baseline is the subject before its changes.
+    pub has_unchanged: bool,
     /// Published numbers about the subject, alone and over the baselines, on the cycle, as [`published`](cvtcycle_validate::published) has them, where
     /// they are read already.
     pub published: Option<Vec<ValidationRow>>,
@@ -53,6 +55,7 @@ pub struct RunQuestion<'a> {
 ///     start: StartWord::Word("soak".to_owned()),
 ///     settings: Settings::default(),
 ///     price: true,
+///     has_unchanged: false,
 ///     published: None,
 /// };
 /// let summary = summary(&question, &driven);
@@ -64,6 +67,9 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
     let (cycle, settings) = (of.cycle, &of.settings);
     let start = of.start.clone();
     let mut summary = summarise(cycle, of.ambient_degc, start, settings.clone(), driven);
+    if let Some(run) = summary.runs.get_mut(1).filter(|_| of.has_unchanged) {
+        UNCHANGED.clone_into(&mut run.role);
+    }
     find_maps_left(&mut summary, cycle, &of.conditions, driven);
     // Without a distance to speak of there is no fuel per distance to save.
     let priced = |run: &RunSummary| of.price && run.over() == Over::Distance;

@@ -120,6 +120,7 @@ fn entry(key: &Key<'_>, complete: bool) -> Value {
             "type": "object",
             "properties": {
                 "value": bare,
+                "range": { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 },
                 "status": { "enum": STATUSES },
                 "source": text,
                 "note": text.clone(),

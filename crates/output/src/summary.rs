@@ -13,7 +13,7 @@ mod run;
 
 pub use alike::{Difference, differences, words as likeness};
 pub use failure::{Deficit, Failure, has_failed_trace};
-pub use known::{Contradiction, DrawnDifference};
+pub use known::{Contradiction, DrawnDifference, FAILED_SHARES};
 pub use maps_left::{MapLeft, find_maps_left};
 pub use phases::PhaseSummary;
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
@@ -33,6 +33,9 @@ use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
+/// Role of a car that is the subject before the changes of its user.
+pub const UNCHANGED: &str = "unchanged";
+
 /// A whole run: the subject and its baselines through one cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {

@@ -39,10 +39,12 @@ pub mod write;
 use std::path::PathBuf;
 
 use cover::Cover;
+use cvtcycle_analysis::answer::Answer;
 use cvtcycle_config::{Problems, Setting};
+use cvtcycle_study::Study;
 use document::Document;
 use problems::problem;
-use results::{ResultDir, find};
+use results::{ResultDir, RunResults, find};
 
 /// Builds the report of one directory, or of two runs against each other.
 ///
@@ -65,6 +67,22 @@ pub fn report(
     dirs: &[PathBuf],
     with: &[PathBuf],
     cover: Option<&str>,
+) -> Result<Document, Problems> {
+    report_with(dirs, with, cover, None)
+}
+
+/// Drives the study of a run's question: `None` where the user has stopped it.
+pub type Drives<'a> = &'a dyn Fn(&Study) -> Result<Option<Answer>, Problems>;
+
+/// As [`report`]; the ranges, options and next test of a run that has no study of levers are computed by `drives`.
+///
+/// # Errors
+/// As [`report`], and problems of the study.
+pub fn report_with(
+    dirs: &[PathBuf],
+    with: &[PathBuf],
+    cover: Option<&str>,
+    drives: Option<Drives>,
 ) -> Result<Document, Problems> {
     let mut problems = Problems::new();
     let cover = cover.map(Cover::read).transpose();
@@ -90,6 +108,9 @@ pub fn report(
         );
         return Err(problem(first, &message, hint).into());
     }
+    if let ([ResultDir::Run(run)], Some(drives)) = (&mut results[..], drives) {
+        compute(run, drives)?;
+    }
     let mut document = match &results[..] {
         [ResultDir::Run(run)] => run::document(run)?,
         [ResultDir::Study(study)] => study::document(study)?,
@@ -106,4 +127,21 @@ pub fn report(
         cover.apply(&mut document);
     }
     Ok(document)
+}
+
+/// Adds the answer of a run, unless its directory has a study of levers of the same case.
+fn compute(run: &mut RunResults, drives: Drives) -> Result<(), Problems> {
+    let summary = &run.summary;
+    let has_levers = |study| study_answers::levers_of_run(study, summary).is_some();
+    if run.studies.iter().any(has_levers) {
+        return Ok(());
+    }
+    match run::study_of_run(run) {
+        Ok(study) => run.answer = drives(&study)?,
+        Err(why) => run.missing.push(format!("options were not computed: {why}")),
+    }
+    if let Some(answer) = &run.answer {
+        run::merge(&mut run.summary, answer);
+    }
+    Ok(())
 }

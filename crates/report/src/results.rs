@@ -18,7 +18,8 @@ use cvtcycle_study::answer::ambient::{WarmUp, warm_ups};
 use cvtcycle_study::execute::manifest::TRACES;
 use cvtcycle_study::statistics::Confidence;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
-use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
+use cvtcycle_study::{Answer as StudyAnswer, StudyManifest, StudyTable, answer};
+use cvtcycle_analysis::answer::Answer;
 
 /// Summary of a run or a validation.
 const SUMMARY: &str = "summary.json";
@@ -49,6 +50,8 @@ pub struct RunResults {
     pub studies: Vec<StudyResults>,
     /// Validation of the model.
     pub validation: Option<Value>,
+    /// Ranges, options and next test from one sample, where they were computed for the report.
+    pub answer: Option<Answer>,
     /// Sentences on missing parts.
     pub missing: Vec<String>,
 }
@@ -65,7 +68,7 @@ pub struct StudyResults {
     /// Parts.
     pub store: store::Study,
     /// Statistics.
-    pub answer: Answer,
+    pub answer: StudyAnswer,
     /// Warm-up of each run, for a matrix with traces.
     pub warm_ups: Vec<WarmUp>,
 }
@@ -351,6 +354,7 @@ fn run(path: &Path, file: &Path, value: Value, sum: &str) -> Result<RunResults, 
         histories,
         studies: Vec::new(),
         validation: None,
+        answer: None,
         missing,
     })
 }

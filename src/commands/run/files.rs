@@ -34,6 +34,12 @@ impl When {
         ("never", When::Never),
     ];
 
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        let found = When::NAMES.iter().find(|(_, when)| *when == self);
+        found.map_or("", |(name, _)| name)
+    }
+
     /// Decides for a cycle and a time step, s.
     pub fn wanted(self, cycle: &Cycle, dt_s: f64) -> bool {
         match self {

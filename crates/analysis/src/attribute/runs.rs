@@ -114,6 +114,7 @@ impl<'a> Runs<'a> {
             loss_kj,
             energy_percent: loss_kj.and_then(percent),
             saved: self.saving(price),
+            range: None,
             alone,
         }
     }

@@ -14,16 +14,19 @@ pub fn answer(run: &RunSummary) -> Option<String> {
     let price = run.price.as_ref()?;
     let whole = price.together.percent?;
     let priced = |c: Component| {
-        let percent = price.losses.get(c.name())?.saved.percent?;
-        Some((run.loss_words(c.name()), percent))
+        let own = price.losses.get(c.name())?;
+        Some((run.loss_words(c.name()), own.saved.percent?, own.range))
     };
-    let mut losses: Vec<(String, f64)> = Component::ALL.into_iter().filter_map(priced).collect();
+    let mut losses: Vec<(String, f64, Option<[f64; 2]>)> = Component::ALL.into_iter().filter_map(priced).collect();
     losses.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let rest: f64 = losses.iter().skip(NAMED).map(|(_, percent)| percent).sum();
+    let rest: f64 = losses.iter().skip(NAMED).map(|(_, percent, _)| percent).sum();
     let count = losses.len().saturating_sub(NAMED);
     let named = losses.iter().take(NAMED);
     let mut parts: Vec<String> = named
-        .map(|(name, x)| format!("{name} {}", fixed(*x, 1)))
+        .map(|(name, x, range)| match range {
+            Some([low, high]) => format!("{name} {} ({} to {})", fixed(*x, 1), fixed(*low, 1), fixed(*high, 1)),
+            None => format!("{name} {}", fixed(*x, 1)),
+        })
         .collect();
     if count > 0 {
         parts.push(format!("{count} others {}", fixed(rest, 1)));

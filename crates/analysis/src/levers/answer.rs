@@ -14,11 +14,12 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::request::{ColumnNote, LeverNotes};
+use crate::answer::failed_checks;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, ProblemKind};
 use cvtcycle_output::fleet_spread::{FleetRange, fuel_range};
 use cvtcycle_study::StudyManifest;
-use cvtcycle_study::answer::{Ended, Status, StudyTable, counted, ended};
+use cvtcycle_study::answer::{Ended, Information, Status, StudyTable, counted, ended};
 use cvtcycle_study::execute::manifest::SCHEMA;
 use cvtcycle_study::execute::outputs::FUEL;
 use cvtcycle_study::execute::side_effects::{FLOOR, LOCKED, LUGGING, RESERVE};
@@ -123,6 +124,9 @@ pub struct LeverRow {
     /// Sum of the medians of the levers of a combination, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sum_percent: Option<f64>,
+    /// The uncertain value that sets the size of the change; none where no value is seen to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub set_by: Option<SetBy>,
     /// Effects other than fuel.
     pub effects: Vec<SideEffect>,
 }
@@ -140,6 +144,19 @@ pub struct SideEffect {
     pub reference_worst: f64,
     /// Median of the change.
     pub change: f64,
+    /// Quantiles 0.05 and 0.95 of the change, draw by draw.
+    pub change_ends: [f64; 2],
+}
+
+/// The uncertain value that sets the size of a change: the one with the largest share of the variance, above what chance gives.
+#[derive(Clone, Debug, Serialize)]
+pub struct SetBy {
+    /// Name of the factor.
+    pub factor: String,
+    /// Key of the factor.
+    pub key: String,
+    /// Share of the variance of the change (IN-2).
+    pub share: f64,
 }
 
 impl LeverAnswer {
@@ -166,10 +183,14 @@ impl LeverRow {
         is_most(self.failed, self.failed + self.n)
     }
 
+    /// A side effect by its name.
+    pub fn effect(&self, name: &str) -> Option<&SideEffect> {
+        self.effects.iter().find(|effect| effect.name == name)
+    }
+
     /// The worst value of a side effect; NaN where there is none.
     pub fn worst(&self, name: &str) -> f64 {
-        let found = self.effects.iter().find(|effect| effect.name == name);
-        found.map_or(f64::NAN, |effect| effect.worst)
+        self.effect(name).map_or(f64::NAN, |effect| effect.worst)
     }
 
     /// True for a combination.
@@ -193,14 +214,8 @@ impl Numbers {
     fn reasons(&self, column: usize, at: &[bool]) -> Vec<(String, usize)> {
         let of_points = self.reasons[column].iter().zip(at);
         let texts = of_points.filter(|(_, at)| **at);
-        counted(texts.flat_map(|(text, _)| names(text)))
+        counted(texts.flat_map(|(text, _)| failed_checks(text)))
     }
-}
-
-/// The first words of the reasons of a run, which are the names of its failed checks: what follows differs from run to run.
-fn names(reason: &str) -> impl Iterator<Item = String> {
-    let all = reason.split("; ");
-    all.filter_map(|one| Some(one.split(' ').next()?.to_owned()))
 }
 
 /// Computes what a lever study says from the parts that are there.
@@ -296,8 +311,10 @@ fn blocks(
             }
             continue;
         }
-        if let Some(block) = blocks.last_mut() {
-            block.rows.push(row(k, column, numbers, confidence));
+        let is_lever = ["lever", "combination"].contains(&column.kind.as_str());
+        if let Some(block) = blocks.last_mut().filter(|_| is_lever) {
+            let set_by = |percent: &[f64]| set_by(outline, percent, confidence);
+            block.rows.push(row(k, column, numbers, (confidence, &set_by)));
         }
     }
     for block in &mut blocks {
@@ -320,7 +337,24 @@ fn blocks(
     blocks
 }
 
-fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confidence) -> LeverRow {
+/// The value that sets the size of a change.
+fn set_by(outline: &StudyManifest, percent: &[f64], confidence: Confidence) -> Option<SetBy> {
+    let of = Information::of_sample(&outline.plan, percent, confidence)?;
+    let first = of.causes().next()?;
+    let factor = outline.plan.factors.iter().find(|factor| factor.name == first.name)?;
+    Some(SetBy {
+        factor: first.name.clone(),
+        key: factor.key.clone(),
+        share: first.share.value,
+    })
+}
+
+fn row(
+    column: usize,
+    note: &ColumnNote,
+    numbers: &Numbers,
+    (confidence, set_by): (Confidence, &dyn Fn(&[f64]) -> Option<SetBy>),
+) -> LeverRow {
     let reference = note.reference;
     let pairs = |of: &[Vec<f64>]| -> Vec<(f64, f64)> {
         of[column]
@@ -341,7 +375,8 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
         })
     };
     let [low, high] = confidence.ends();
-    let differences = |of: &[Vec<f64>]| median(pairs(of).into_iter().map(|(x, of)| x - of));
+    let changes = |of: &[Vec<f64>]| sorted(pairs(of).into_iter().map(|(x, of)| x - of));
+    let differences = |of: &[Vec<f64>]| quantile_of_sorted(&changes(of), 0.5);
     let both = numbers.ok[column].iter().zip(&numbers.ok[reference]);
     let failed: Vec<bool> = both.map(|(own, reference)| !own && *reference).collect();
     let effects = EFFECTS.iter().zip(&numbers.effects);
@@ -357,13 +392,18 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,
+        set_by: set_by(&percent),
         effects: effects
-            .map(|((name, unit, largest), of)| SideEffect {
-                name,
-                unit,
-                worst: worst(&of[column], *largest),
-                reference_worst: worst(&of[reference], *largest),
-                change: differences(of),
+            .map(|((name, unit, largest), of)| {
+                let changes = changes(of);
+                SideEffect {
+                    name,
+                    unit,
+                    worst: worst(&of[column], *largest),
+                    reference_worst: worst(&of[reference], *largest),
+                    change: quantile_of_sorted(&changes, 0.5),
+                    change_ends: [0.05, 0.95].map(|p| quantile_of_sorted(&changes, p)),
+                }
             })
             .collect(),
     }
@@ -378,8 +418,12 @@ fn worst(values: &[f64], largest: bool) -> f64 {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    quantile_of_sorted(&sorted, 0.5)
+    sorted
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    quantile_of_sorted(&sorted(values), 0.5)
 }

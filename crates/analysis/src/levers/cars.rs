@@ -38,7 +38,7 @@ pub(super) fn cars(
     let mut useless: Vec<Vec<(String, Useless)>> = Vec::new();
     useless.resize_with(request.levers.len(), Vec::new);
     for word in &request.vehicles {
-        let plain = options(request.engine_oil.as_ref(), std::iter::empty());
+        let plain = options(&request.base, std::iter::empty());
         let Some(base) = problems.take(setup::load(word, &plain)) else {
             continue;
         };
@@ -74,7 +74,7 @@ pub(super) fn cars(
         let said = useless.iter().filter(|(_, why)| is_said(why));
         notes.extend(said.map(|(car, why)| noted(lever, car, why)));
     }
-    if problems.is_empty() {
+    if problems.is_empty() && !request.levers.is_empty() {
         problems.extend(
             cars.iter()
                 .filter(|car| car.levers.is_empty())
@@ -95,7 +95,7 @@ fn try_lever(
     if lever.of_cvt.is_some_and(|cvt| cvt != is_cvt) {
         return Err(Useless::OtherBox);
     }
-    let with = options(request.engine_oil.as_ref(), std::iter::once(lever));
+    let with = options(&request.base, std::iter::once(lever));
     let changed = setup::load(word, &with).map_err(Useless::Bad)?;
     let values = |setup: &Setup| -> Vec<(String, String)> {
         let keys = setup.keys.iter();

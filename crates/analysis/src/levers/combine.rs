@@ -106,7 +106,7 @@ fn together<'l>(
     car: &LeverCar,
     levers: impl Iterator<Item = &'l Lever>,
 ) -> Option<String> {
-    let options = options(request.engine_oil.as_ref(), levers);
+    let options = options(&request.base, levers);
     let problems = setup::load(&car.word, &options).err()?;
     problems.first().map(|problem| problem.message.clone())
 }

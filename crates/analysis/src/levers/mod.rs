@@ -20,10 +20,10 @@ mod request;
 mod tables;
 mod words;
 
-pub use answer::{LeverAnswer, LeverBlock, LeverRow, SideEffect, lever_answer};
+pub use answer::{LeverAnswer, LeverBlock, LeverRow, SetBy, SideEffect, lever_answer};
 pub use combine::{COMBINE, Combine};
 pub use prepare::prepare;
-pub use request::{ColumnNote, LeverNotes, LeverRequest};
+pub use request::{ColumnNote, LeverNotes, LeverRequest, OtherCar, OtherKind};
 pub use tables::csv;
 pub use words::answer_in_words;
 
@@ -142,12 +142,11 @@ fn removes(by: &Override, other: &Override) -> bool {
 }
 
 /// Collects the options that cars with some levers are read with.
-fn options<'l>(engine_oil: Option<&String>, levers: impl Iterator<Item = &'l Lever>) -> Options {
+fn options<'l>(base: &Options, levers: impl Iterator<Item = &'l Lever>) -> Options {
     let mut options = Options {
-        engine_oil: engine_oil.cloned(),
         // Another file may have named them, and they are read many times.
         named_by: NamedBy::File,
-        ..Options::default()
+        ..base.clone()
     };
     for lever in levers {
         options.set.extend(lever.set.iter().cloned());

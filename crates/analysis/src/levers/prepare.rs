@@ -7,12 +7,13 @@
 
 use super::cars::{LeverCar, cars};
 use super::combine::{Combination, Nominal, check, combinations};
-use super::request::{ColumnNote, LeverNotes, LeverRequest};
+use super::request::{ColumnNote, LeverNotes, LeverRequest, OtherCar, OtherKind};
 use super::{Lever, options};
-use cvtcycle_config::{Problem, Problems};
+use cvtcycle_config::{Acts, Override, Problem, Problems};
 use cvtcycle_study::execute::outputs::FUEL;
-use cvtcycle_study::execute::{Column, Columns, Study, idle, relative};
-use cvtcycle_study::plan::{Base, Design, Factor, Plan, RUN_OPTIONS};
+use cvtcycle_config::setup::{Options, load};
+use cvtcycle_study::execute::{Column, Columns, Study, idle, relative, with_ranges};
+use cvtcycle_study::plan::{Base, Cars, Design, Factor, Plan, RUN_OPTIONS};
 
 /// A column's car with its changes.
 struct Change<'r> {
@@ -28,6 +29,7 @@ struct Change<'r> {
 /// All problems of plan, cars, levers and combinations.
 ///
 /// ```
+/// use cvtcycle_config::setup::Options;
 /// use cvtcycle_analysis::levers::{Combine, LeverFile, LeverRequest, prepare};
 /// let text = "[[lever]]\nname = \"lighter\"\nset = [\"road_load.mass_kg*=0.9\"]\n";
 /// let study = prepare(&LeverRequest {
@@ -37,7 +39,8 @@ struct Change<'r> {
 ///     cycle: "ece15".to_owned(),
 ///     start: "soak".to_owned(),
 ///     dt_s: 1.0,
-///     engine_oil: None,
+///     base: Options::default(),
+///     others: Vec::new(),
 ///     draws: None,
 ///     combine: Combine::None,
 ///     heard_rpm: 1300.0,
@@ -50,10 +53,19 @@ pub fn prepare(request: &LeverRequest) -> Result<Study, Problems> {
     let plan = problems.take(plan_of(request));
     let (cars, mut notes) = cars(request, &mut problems);
     check(request, &cars, &mut problems);
-    let Some((plan, of_cvt)) = plan else {
+    let Some((mut plan, of_cvt)) = plan else {
         return Err(problems);
     };
     problems.finish()?;
+    if request.draws.is_some() {
+        let others = request.others.iter();
+        let others = others.filter(|other| other.kind == OtherKind::Baseline);
+        let words = others.map(|other| (&other.word, &other.options));
+        plan = with_ranges_of(plan, of_cvt, &cars, (request, words))?;
+    }
+    let is_like_subject = cars.first().is_some_and(|car| car.is_cvt == of_cvt);
+    plan.factors
+        .retain(|factor| !is_given(factor, request, is_like_subject));
     let mut columns = Builder {
         request,
         plan: &plan,
@@ -123,7 +135,10 @@ fn plan_of(request: &LeverRequest) -> Result<(Plan, bool), Problems> {
         cycle: request.cycle.clone(),
         ambient_degc: request.ambients_degc.first().copied().unwrap_or(f64::NAN),
         start: request.start.clone(),
-        engine_oil: request.engine_oil.clone(),
+        lubricant: request.base.lubricant.clone(),
+        engine_oil: request.base.engine_oil.clone(),
+        set: request.base.set.clone(),
+        formulation: request.base.formulation,
         dt_s: request.dt_s,
         ..Base::default()
     };
@@ -144,6 +159,35 @@ fn plan_of(request: &LeverRequest) -> Result<(Plan, bool), Problems> {
     ))
 }
 
+/// The plan with the ranges that the cars and their baselines give their own values.
+fn with_ranges_of<'r>(
+    plan: Plan,
+    of_cvt: bool,
+    cars: &[LeverCar],
+    (request, others): (&'r LeverRequest, impl Iterator<Item = (&'r String, &'r Options)>),
+) -> Result<Plan, Problems> {
+    let plain = options(&request.base, std::iter::empty());
+    let own = cars.iter().map(|car| load(&car.word, &plain));
+    let others = others.map(|(word, options)| load(word, options));
+    let setups = own.chain(others).collect::<Result<Vec<_>, _>>()?;
+    Ok(with_ranges(plan, of_cvt, &setups.iter().collect::<Vec<_>>()))
+}
+
+/// True for a factor whose value the user has given all of its cars: it is certain.
+fn is_given(factor: &Factor, request: &LeverRequest, is_like_subject: bool) -> bool {
+    let sets = |by: &Override| match factor.acts {
+        // The value of a key, or a table with another option.
+        Acts::Value => factor.key == by.key() || factor.key.starts_with(&format!("{}.", by.key())),
+        _ => by.acts() == Acts::Value && factor.key == by.key(),
+    };
+    let of_subject = match factor.cars {
+        Cars::Baselines => !is_like_subject,
+        Cars::Subject => is_like_subject,
+        Cars::All => factor.acts == Acts::Value,
+    };
+    request.set_all.iter().any(sets) || of_subject && request.base.set.iter().any(sets)
+}
+
 /// The plan of cars as their files have them.
 fn nominal_plan() -> Result<Plan, Problems> {
     Plan::read(
@@ -154,13 +198,20 @@ fn nominal_plan() -> Result<Plan, Problems> {
 
 /// Each lever of a car by itself, without draws.
 fn nominal(request: &LeverRequest, plan: &Plan, car: &LeverCar) -> Result<Vec<Nominal>, Problems> {
+    let own = LeverRequest {
+        others: Vec::new(),
+        ..request.clone()
+    };
+    if car.levers.is_empty() {
+        return Ok(Vec::new());
+    }
     let without = Plan {
         factors: Vec::new(),
         design: Design::Grid,
         ..plan.clone()
     };
     let mut builder = Builder {
-        request,
+        request: &own,
         plan: &without,
         of_cvt: true,
         list: Vec::new(),
@@ -227,6 +278,10 @@ impl<'r> Builder<'r> {
         for ambient_degc in &request.ambients_degc {
             // Left out factors with the column of their reference.
             let plain = self.reference(car, *ambient_degc, 0, &[]);
+            let is_first = request.vehicles.first() == Some(&car.word);
+            for other in request.others.iter().filter(|_| is_first) {
+                self.other(car, *ambient_degc, (other, plain));
+            }
             let mut references = vec![(Vec::new(), plain)];
             for change in &changes {
                 let left_out = self.left_out(change);
@@ -275,6 +330,37 @@ impl<'r> Builder<'r> {
         own
     }
 
+    /// A car that is compared with the reference.
+    fn other(&mut self, car: &LeverCar, ambient_degc: f64, (other, reference): (&OtherCar, usize)) {
+        let kind = other.kind.name().to_owned();
+        let set = other.options.set.iter().map(ToString::to_string).collect();
+        self.notes.push(ColumnNote {
+            vehicle: car.name.clone(),
+            ambient_degc,
+            kind: kind.clone(),
+            name: other.name.clone(),
+            title: other.name.clone(),
+            reference,
+            members: Vec::new(),
+            set,
+            left_out: Vec::new(),
+            group: String::new(),
+            needs: String::new(),
+            status: String::new(),
+            source: String::new(),
+        });
+        self.list.push(Column {
+            name: format!("{}/{ambient_degc}/{kind}/{}", car.name, other.name),
+            role: kind,
+            word: other.word.clone(),
+            is_subject: other.is_cvt == self.of_cvt,
+            ambient_degc,
+            options: other.options.clone(),
+            left_out: Vec::new(),
+            is_watched: false,
+        });
+    }
+
     fn push(
         &mut self,
         car: &LeverCar,
@@ -321,8 +407,9 @@ impl<'r> Builder<'r> {
             word: car.word.clone(),
             is_subject: car.is_cvt == self.of_cvt,
             ambient_degc,
-            options: options(self.request.engine_oil.as_ref(), levers()),
+            options: options(&self.request.base, levers()),
             left_out,
+            is_watched: !self.request.levers.is_empty(),
         });
     }
 }

@@ -2,6 +2,8 @@
 
 use super::Lever;
 use super::combine::Combine;
+use cvtcycle_config::Override;
+use cvtcycle_config::setup::Options;
 use cvtcycle_study::plan::Plan;
 use serde::{Deserialize, Serialize};
 
@@ -20,8 +22,12 @@ pub struct LeverRequest {
     pub start: String,
     /// Largest step, s.
     pub dt_s: f64,
-    /// Engine oil of all cars, name or path.
-    pub engine_oil: Option<String>,
+    /// Oils and overrides of the vehicles.
+    pub base: Options,
+    /// Those of the overrides that baselines have as well.
+    pub set_all: Vec<Override>,
+    /// Cars that are driven with the draws of the first vehicle, to be compared with it.
+    pub others: Vec<OtherCar>,
     /// Plan whose factors are drawn, number of draws and seed; none for the cars as their files have them.
     pub draws: Option<(Plan, u64, u64)>,
     /// Combinations.
@@ -30,8 +36,45 @@ pub struct LeverRequest {
     pub heard_rpm: f64,
 }
 
+/// A car that is driven with the draws of another one.
+#[derive(Clone, Debug)]
+pub struct OtherCar {
+    /// What it is compared for.
+    pub kind: OtherKind,
+    /// Name, unique within its kind.
+    pub name: String,
+    /// Name or path of its file.
+    pub word: String,
+    /// Oils and overrides.
+    pub options: Options,
+    /// True if it has a CVT.
+    pub is_cvt: bool,
+}
+
+/// What another car is compared for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OtherKind {
+    /// A baseline.
+    Baseline,
+    /// The car before the change that the user makes.
+    Unchanged,
+    /// The car without one of its losses.
+    WithoutLoss,
+}
+
+impl OtherKind {
+    /// Word in the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            OtherKind::Baseline => "baseline",
+            OtherKind::Unchanged => "unchanged",
+            OtherKind::WithoutLoss => "without_loss",
+        }
+    }
+}
+
 /// Description of the columns of a lever study.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LeverNotes {
     /// Name of the plan whose factors are drawn; none without draws.
     pub plan: Option<String>,
@@ -50,7 +93,7 @@ pub struct ColumnNote {
     pub vehicle: String,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
-    /// `reference`, `lever` or `combination`.
+    /// `reference`, `lever`, `combination` or the name of an [`OtherKind`].
     pub kind: String,
     /// Name of the lever.
     pub name: String,

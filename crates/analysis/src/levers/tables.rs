@@ -61,6 +61,8 @@ fn lever_columns() -> Vec<Column<(LeverBlock, LeverRow)>> {
         number "fuel_l_per_100km", "L/100 km", "median change of the fuel", (_, r) => r.fuel_l_per_100km;
         number "co2_g_per_km", "g/km", "median change of carbon dioxide", (_, r) => r.co2_g_per_km;
         optional "sum_percent", "%", "sum of the medians of its levers", (_, r) => r.sum_percent;
+        text "set_by", "", "uncertain value that sets the size of the change; empty where none is seen to", (_, r) => r.set_by.as_ref().map_or_else(String::new, |of| of.key.clone());
+        optional "set_by_share", "-", "share of the variance of the change that goes with it", (_, r) => Some(r.set_by.as_ref()?.share);
     });
     list
 }

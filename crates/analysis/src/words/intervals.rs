@@ -11,9 +11,10 @@ use cvtcycle_config::{Problems, embedded};
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::summary::DrawnDifference;
 
-use super::drawn::{PLAN, differences};
-use cvtcycle_study::execute::Study;
-use cvtcycle_study::plan::{Design, Plan};
+use crate::answer::{PLAN, Question, drive, prepare};
+use cvtcycle_config::setup::{Options, load};
+use cvtcycle_output::progress::NoProgress;
+use cvtcycle_study::plan::Plan;
 
 /// The file.
 const TABLE: &str = include_str!("../../intervals/penalty.csv");
@@ -88,6 +89,7 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
         plan: PLAN.to_owned(),
         draws: count(7)?,
         left_out: DRAWS - count(7)?,
+        reasons: Vec::new(),
         more: count(8)?,
         percent: [number(9)?, number(10)?, number(11)?],
     })
@@ -98,18 +100,19 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
 /// # Errors
 /// Problems of the plan or of its cars.
 pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, Problems> {
-    let mut plan = Plan::open(PLAN)?;
-    plan.design = Design::MonteCarlo {
-        samples: DRAWS,
-        seed: 1,
+    let mut base = Plan::open(PLAN)?.base;
+    cycle.clone_into(&mut base.cycle);
+    base.ambient_degc = ambient_degc;
+    start.clone_into(&mut base.start);
+    let cars = [&base.vehicle, &base.baselines.clone().unwrap_or_default()[0]]
+        .map(|word| Ok(car_sha256(&load(word, &Options::default())?)));
+    let [subject, baseline]: [Result<String, Problems>; 2] = cars;
+    let (subject, baseline) = (subject?, baseline?);
+    let study = prepare(&Question::differences(base, DRAWS))?;
+    let answer = drive(&study, &NoProgress)?;
+    let Some((_, of)) = answer.and_then(|answer| answer.differences.into_iter().next()) else {
+        return Ok(String::new());
     };
-    plan.base.cycle = cycle.to_owned();
-    plan.base.ambient_degc = ambient_degc;
-    plan.base.start = start.to_owned();
-    let study = Study::prepare(plan)?;
-    let mut found = differences(&study)?;
-    let of = found.swap_remove(0);
-    let [subject, baseline] = [0, 1].map(|car| study.cars[car].sha256(&study.plan.factors));
     let (of_cycle, plan) = (cycle_sha256(&study.cycles[0]), plan_sha256());
     let (n, more, [low, median, high]) = (of.draws, of.more, of.percent);
     Ok(format!(

@@ -1,7 +1,6 @@
 //! Results in sentences, for the terminal and for documents. A sentence is made only where it is true; a number has the digits that its
 //! interval leaves it.
 
-pub mod drawn;
 mod effects;
 pub mod intervals;
 pub mod run;

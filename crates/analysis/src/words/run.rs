@@ -11,8 +11,8 @@ use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range,
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
-    Comparison, Contradiction, Driven, MapLeft, Over, RecordingSummary, RunSummary, StartWord,
-    Summary,
+    Comparison, Contradiction, DrawnDifference, Driven, MapLeft, Over, RecordingSummary, RunSummary, StartWord,
+    Summary, UNCHANGED,
 };
 
 use super::intervals as drawn;
@@ -50,12 +50,17 @@ pub fn assess_fleet(summary: &mut Summary) {
         .collect();
     let is_named = |run: &RunSummary| Kind::Vehicle.names().contains(&run.vehicle.as_str());
     let is_shipped = summary.runs.iter().all(is_named);
+    let roles: Vec<String> = summary.runs.iter().map(|run| run.role.clone()).collect();
     let twin = summary
         .runs
         .first()
         .map_or_else(String::new, |run| format!("{}_twin", run.vehicle));
-    let baselines = kinds.iter().skip(1);
-    for (comparison, other) in summary.comparison.iter_mut().zip(baselines) {
+    let baselines = kinds.iter().zip(&roles).skip(1);
+    for (comparison, (other, role)) in summary.comparison.iter_mut().zip(baselines) {
+        // Measured cars differ by more than a change of one of them.
+        if role == UNCHANGED {
+            continue;
+        }
         let of = Compared {
             kinds: [&kinds[0], other],
             other: match comparison.differences.is_empty() {
@@ -93,11 +98,13 @@ fn assess_draws(
     known: Option<&[ValidationRow]>,
 ) {
     let usual = summary.settings.dt_s >= 1.0 && summary.settings.formulation == "smooth";
+    let is_changed = summary.runs.iter().any(|run| run.role == UNCHANGED);
     let names = driven.iter().map(|car| car.name);
     let StartWord::Word(start) = summary.start.clone() else {
         return;
     };
     if !usual
+        || is_changed
         || !names
             .clone()
             .all(|name| Kind::Vehicle.names().contains(&name))
@@ -214,14 +221,14 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let recording = summary.recording.as_ref();
     let left = |k: usize| recording.and_then(|own| own.percent.get(k).copied().flatten());
     let against = summary.comparison.iter().enumerate().filter_map(|(k, of)| {
-        let said = against(of, explained).map(|said| match left(k) {
+        let said = against(of, &summary.runs[k + 1], explained).map(|said| match left(k) {
             Some(ends) => format!(
                 "{said} [{} by the resolution of the log]",
                 between(ends, "%")
             ),
             None => said,
         });
-        explained[0] |= of.interval.is_some();
+        explained[0] |= of.interval.as_ref().is_some_and(|of| of.ends().is_some());
         explained[1] |= of.interval.is_none() && of.fleet.is_some();
         said
     });
@@ -238,8 +245,13 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         Over::Distance => String::new(),
         Over::Time => format!(" ({})", mass_in_time(run)),
     };
+    let faults = run.faults();
+    let failed = match faults.is_empty() {
+        true => String::new(),
+        false => format!("FAILED, {}; not the numbers of a car that drives this cycle. ", faults.join(", ")),
+    };
     let first = format!(
-        "{doubt}{}: {} {}{mass}{resolution}{range}{against}.",
+        "{failed}{doubt}{}: {} {}{mass}{resolution}{range}{against}.",
         run.vehicle,
         fixed(fuel, 2),
         over.unit()
@@ -249,18 +261,25 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         .filter(|own| own.starts)
         .and_then(|_| summary.start.nodes_in_words())
         .map(|nodes| format!("The drive starts as the log does: {nodes}."));
-    let lines = [
-        Some(first),
-        recording.and_then(repaired),
-        starts,
-        measured,
-        price(run),
-    ]
-    .into_iter()
-    .flatten();
+    let rest = [recording.and_then(repaired), starts, measured, price(run)];
+    let lines = std::iter::once(first)
+        .chain(failing_draws(summary))
+        .chain(rest.into_iter().flatten());
     let lines = lines.chain(input_doubts(summary));
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
+}
+
+/// Draws in which a car fails, where they are more than a few: the first risk.
+fn failing_draws(summary: &Summary) -> Vec<String> {
+    let drawn = summary.comparison.iter().filter_map(|comparison| {
+        let words = comparison.interval.as_ref()?.failures_in_words()?;
+        Some(format!(
+            "Risk: against {} {words}. A smaller range of the values that cause it, or another value, is needed before these cars can be compared.",
+            comparison.baseline
+        ))
+    });
+    drawn.collect()
 }
 
 /// Means of other quantities of the log and of the computed car, a sentence.
@@ -323,6 +342,7 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
     let confidence = Confidence::default();
     let drawn = summary.comparison.iter().filter_map(|comparison| {
         let (of, percent) = (comparison.interval.as_ref()?, comparison.fuel_percent?);
+        of.ends()?;
         let [low, median, high] = of.percent;
         let n = usize::try_from(of.draws).ok()?;
         let mut doubts = Enough::from_draws(n, confidence).doubts(confidence);
@@ -400,7 +420,7 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
 pub fn intervals(summary: &Summary) -> Vec<String> {
     let drawn = summary.comparison.iter().filter_map(|comparison| {
         let of = comparison.interval.as_ref()?;
-        let ends = [of.percent[0], of.percent[2]];
+        let ends = of.ends()?;
         let median = signed(of.percent[1], decimals(ends));
         let ends = between(ends, "%");
         let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
@@ -412,11 +432,25 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
 }
 
 /// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
-fn against(comparison: &Comparison, [explained, explained_fleet]: [bool; 2]) -> Option<String> {
+fn against(
+    comparison: &Comparison,
+    other: &RunSummary,
+    [explained, explained_fleet]: [bool; 2],
+) -> Option<String> {
     let percent = comparison.fuel_percent?;
-    let baseline = &comparison.baseline;
-    let Some(drawn) = &comparison.interval else {
-        let compared = more_or_less(percent, 1);
+    let is_change = other.role == UNCHANGED;
+    let baseline = match is_change {
+        true => "the car unchanged",
+        false => comparison.baseline.as_str(),
+    };
+    let faults = other.faults();
+    let baseline = match faults.is_empty() {
+        true => baseline.to_owned(),
+        false => format!("{baseline}, which failed ({})", faults.join(", ")),
+    };
+    let Some((drawn, ends)) = comparison.interval.as_ref().and_then(|of| Some((of, of.ends()?)))
+    else {
+        let compared = more_or_less(percent, if is_change { 2 } else { 1 });
         let than = than(&compared);
         let range = comparison.fleet.as_ref().map(|of| {
             let range = match explained_fleet {
@@ -425,11 +459,13 @@ fn against(comparison: &Comparison, [explained, explained_fleet]: [bool; 2]) -> 
             };
             format!(" ({range})")
         });
-        let range =
-            range.unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());
+        let failing = comparison.interval.as_ref().and_then(DrawnDifference::failures_in_words);
+        let failing = failing.map(|words| format!(" (no range: {words})"));
+        let range = range.or(failing).unwrap_or_else(|| {
+            " (how sure this is, no measured cars tell)".to_owned()
+        });
         return Some(format!(", {compared} {than} {baseline}{range}"));
     };
-    let ends = [drawn.percent[0], drawn.percent[2]];
     let compared = more_or_less(percent, decimals(ends));
     let (than, ends) = (than(&compared), between(ends, "%"));
     let (draws, more) = (drawn.draws, drawn.more);

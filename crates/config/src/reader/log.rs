@@ -24,6 +24,8 @@ pub struct KeyInfo {
     pub source: String,
     /// Remark on the value; may be empty.
     pub note: String,
+    /// Ends within which the value is known, in the key's unit; none where the file does not say.
+    pub range: Option<[f64; 2]>,
     /// From where it comes: "line 12" of the file, the class or car that it is inherited from, "override" or "default".
     pub from: String,
     /// Allowed range or words.

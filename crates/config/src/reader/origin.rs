@@ -12,7 +12,9 @@ use crate::reader::section::Section;
 /// Allowed statuses of a value in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 /// Fields of a value with its origin.
-const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
+const FIELDS: [&str; 6] = ["value", RANGE, "status", "source", "note", COLUMNS];
+/// The ends within which a number is known.
+const RANGE: &str = "range";
 /// The one that only names of CSV files have: which of their columns is which.
 pub(crate) const COLUMNS: &str = "columns";
 /// Status and source of what an override gives.
@@ -29,6 +31,7 @@ impl KeyInfo {
     pub(crate) fn set_by_key(&mut self, has_table: bool) {
         (self.status, self.source) = (SET.0.to_owned(), SET.1.to_owned());
         self.note.clear();
+        self.range = None;
         if !has_table {
             self.from = OVERRIDE.to_owned();
         }
@@ -41,6 +44,7 @@ pub(crate) struct Found<'r> {
     pub status: &'r str,
     pub source: &'r str,
     pub note: Cow<'r, str>,
+    pub range: Option<[f64; 2]>,
 }
 
 impl<'r> Found<'r> {
@@ -56,6 +60,7 @@ impl<'r> Found<'r> {
             status,
             source,
             note: Cow::Borrowed(""),
+            range: None,
         }
     }
 
@@ -65,12 +70,15 @@ impl<'r> Found<'r> {
         Found {
             status,
             source,
+            range: None,
             ..self
         }
     }
 
     /// Adds what the value says about itself. What an inherited one says is a remark: it is true of the car that it was written for.
     pub(super) fn add(&mut self, own: Origin<'r>, is_inherited: bool) {
+        // What is known of a class or of a like car is what is known of a car that inherits it.
+        self.range = own.range;
         if is_inherited {
             self.note = Cow::Owned(own.words());
             return;
@@ -88,6 +96,7 @@ pub(super) struct Origin<'r> {
     status: &'r str,
     source: &'r str,
     note: &'r str,
+    range: Option<[f64; 2]>,
 }
 
 impl Origin<'_> {
@@ -119,6 +128,7 @@ impl<'r> Section<'r> {
                 _ => "",
             };
             match name.as_str() {
+                RANGE => own.range = self.check_range(key, &entry.node, table.wrapped()),
                 "status" => own.status = self.check_status(key, &entry.node, text),
                 COLUMNS if !is_csv => self.unknown_field(key, (name, entry), fields),
                 "source" | "note" | COLUMNS if !matches!(entry.node.value, Value::Text(_)) => {
@@ -141,6 +151,33 @@ impl<'r> Section<'r> {
             .allowed(fields.join(", "))
             .hint(suggest(name, fields));
         self.report(&entry.key, key, problem);
+    }
+
+    /// The ends of a range, where they hold the value.
+    fn check_range(&self, key: &str, node: &Node, value: Option<&Node>) -> Option<[f64; 2]> {
+        let number = |node: &Node| match &node.value {
+            Value::Integer(value) => Some(*value as f64),
+            Value::Float(value) => Some(*value),
+            _ => None,
+        };
+        let ends = match &node.value {
+            Value::List(items) => items.iter().map(number).collect::<Option<Vec<f64>>>(),
+            _ => None,
+        };
+        let ends: Option<[f64; 2]> = ends.and_then(|ends| ends.try_into().ok());
+        let value = value.and_then(number);
+        match (ends, value) {
+            (Some([low, high]), Some(x)) if low < high && (low..=high).contains(&x) => ends,
+            _ => {
+                let message = format!("`{}` has no range that holds its value", join(&self.path, key));
+                let problem = Problem::out_of_range(message)
+                    .names_key()
+                    .allowed("two numbers with the value between them, low end first")
+                    .hint("write `{ value = 1.0, range = [0.5, 3.0], status = \"assumed\" }`");
+                self.report(&node.span, key, problem);
+                None
+            }
+        }
     }
 
     /// The status, where it is a known one.

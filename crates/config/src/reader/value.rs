@@ -165,6 +165,7 @@ impl<'r> Section<'r> {
             info.status = found.status.to_string();
             info.source = found.source.to_string();
             info.note = found.note.to_string();
+            info.range = found.range;
             info.from = self.reader.document.from(&found.node.span);
         });
     }

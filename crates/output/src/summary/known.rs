@@ -12,10 +12,48 @@ pub struct DrawnDifference {
     /// Pairs left out because a run fails.
     #[serde(default)]
     pub left_out: u64,
+    /// Checks that fail in the pairs left out with their counts, the commonest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reasons: Vec<(String, u64)>,
     /// Pairs in which the subject uses more.
     pub more: u64,
     /// Quantiles 0.05, 0.5 and 0.95 of the difference, per cent.
     pub percent: [f64; 3],
+}
+
+/// Share of the draws that may fail without being named a risk, and above which the others claim no range: they are of a car that
+/// works in the rest of its uncertainty alone.
+pub const FAILED_SHARES: [f64; 2] = [0.05, 0.2];
+
+impl DrawnDifference {
+    /// Share of the pairs that fail.
+    #[must_use]
+    pub fn failed_share(&self) -> f64 {
+        let all = self.draws + self.left_out;
+        match all {
+            0 => 0.0,
+            all => self.left_out as f64 / all as f64,
+        }
+    }
+
+    /// Ends of 90 % of the draws, per cent; `None` where too many draws fail for the others to give a range.
+    #[must_use]
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        let ends = [self.percent[0], self.percent[2]];
+        let is_known = self.failed_share() <= FAILED_SHARES[1] && ends.iter().all(|x| x.is_finite());
+        is_known.then_some(ends)
+    }
+
+    /// "56 of 256 runs with uncertain values varied fail: gross_slip in 40, not_converged in 20"; `None` where so few fail that it is no risk.
+    #[must_use]
+    pub fn failures_in_words(&self) -> Option<String> {
+        (self.failed_share() > FAILED_SHARES[0]).then(|| {
+            let (failed, all) = (self.left_out, self.draws + self.left_out);
+            let reasons = self.reasons.iter().map(|(name, n)| format!("{name} in {n}"));
+            let reasons = reasons.collect::<Vec<_>>().join(", ");
+            format!("{failed} of {all} runs with uncertain values varied fail: {reasons}")
+        })
+    }
 }
 
 /// A published number that a number of this run contradicts.

@@ -53,6 +53,9 @@ pub struct LossPrice {
     /// Fuel that is saved with the factor on this loss (AT-1).
     #[serde(flatten)]
     pub saved: Saving,
+    /// Quantiles 0.05 and 0.95 of the saving over the draws of what is uncertain, per cent; absent where none were driven.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
     /// Fuel that it adds to a car that has the factor on all losses (AT-5); absent unless requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alone: Option<Saving>,

@@ -37,7 +37,7 @@ pub struct RunSummary {
     /// Name in tables and figures, unique within the run; empty in files of an earlier version.
     #[serde(default)]
     pub short: String,
-    /// `subject` or `baseline`.
+    /// `subject`, `unchanged` (the subject before the changes of its user) or `baseline`.
     pub role: String,
     /// `cvt` or `manual`.
     pub transmission: String,
@@ -75,6 +75,9 @@ pub struct RunSummary {
     /// Range of the fuel from measured cars; absent for a car that has measurements of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fleet: Option<FleetRange>,
+    /// Quantiles 0.05, 0.5 and 0.95 of the headline fuel over the draws of what is uncertain; absent where none were driven.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drawn: Option<[f64; 3]>,
     /// Miles per imperial gallon, of the weighted fuel where there is one.
     pub mpg_uk: Option<f64>,
     /// Miles per US gallon, of the weighted fuel where there is one.
@@ -170,6 +173,20 @@ pub struct Solve {
 }
 
 impl RunSummary {
+    /// Failed checks and gross slip, each with its time: with any of them the numbers are none of a car that has driven the cycle.
+    pub fn faults(&self) -> Vec<String> {
+        let seconds = |failure: &Failure| match failure.seconds {
+            Some(s) => format!("{} for {s:.0} s", failure.check.replace('_', " ")),
+            None => failure.check.replace('_', " "),
+        };
+        let slip = Flags::GROSS_SLIP.names().next().unwrap_or_default();
+        let is_failed = self.failures.iter().any(|failure| failure.check == slip);
+        let slips = self.flags_s.get(slip).filter(|s| *s > 0.0 && !is_failed);
+        let failures = self.failures.iter().map(seconds);
+        let slips = slips.map(|s| format!("{} for {s:.0} s", slip.replace('_', " ")));
+        failures.chain(slips).collect()
+    }
+
     /// Name in tables and figures.
     pub fn label(&self) -> &str {
         match self.short.as_str() {
@@ -308,6 +325,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         fuel_l_per_100km: fuel.l_per_100km,
         weighted_fuel_l_per_100km: weighted,
         fleet: None,
+        drawn: None,
         mpg_uk: mpg(MPG_UK),
         mpg_us: mpg(MPG_US),
         co2_g_per_km: fuel.co2_g_per_km,

@@ -7,16 +7,21 @@ use super::super::{study, study_answers, validation};
 use super::{Car, conditions_line, cycle_title, doubts};
 use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
+use cvtcycle_analysis::answer::Answer;
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
 use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
 use cvtcycle_analysis::words::{decimals, of_cars};
-use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary};
+use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary, UNCHANGED};
+use cvtcycle_study::answer::{Information, KnownFactor};
 
 /// Maximum number of levers on page 1, and among the decisions.
 const OPTIONS: (usize, usize) = (6, 2);
 /// Minimum change of the minimum clamp safety that is mentioned.
 const SAFETY: f64 = 0.05;
+
+/// Minimum share of the variance of a change that is mentioned.
+const SIZE: f64 = 0.2;
 
 /// Levers for the car and the ambient temperature of a run.
 pub(super) type Options = Option<(LeverAnswer, LeverBlock)>;
@@ -36,8 +41,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     section
         .blocks
         .push(Block::Lead(lead.collect::<Vec<_>>().join(" ")));
+    let failing = found.answer.as_ref().and_then(Answer::failures_in_words);
     for line in checks(summary)
         .into_iter()
+        .chain(failing.iter().map(|words| format!("{words}. The ranges are those of the others.")))
         .chain(found.missing.iter().map(|line| capital_first(line) + "."))
     {
         section.alert(line);
@@ -55,19 +62,17 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
             let caption = format!("Options: what the most effective changes of the design (levers) do to the fuel of {}.", block.vehicle);
             section.figure("options", caption, foremost_levers(answer, block, OPTIONS.0));
         }
-        None => section.text(
-            "Options: not computed for this case. `cvtcycle levers` drives changes of the design, with the uncertain values varied.",
-        ),
+        None => section.text("Options: not computed for this case."),
     }
-    let next = found
-        .studies
-        .iter()
-        .find_map(|study| next_test(study, summary));
+    let own = found.studies.iter().find_map(|study| next_test(study, summary));
+    let computed = || test_of(found.answer.as_ref()?.information.as_ref()?, summary);
+    let next = own.or_else(computed);
+    let no_test = no_test(found.answer.as_ref());
     section.blocks.push(Block::Boxes(vec![
         ("Risk".to_owned(), risks(found, cars, options)),
         (
             "Next test".to_owned(),
-            vec![next.as_ref().map_or_else(no_test, |next| next.0.clone())],
+            vec![next.as_ref().map_or(no_test, |next| next.0.clone())],
         ),
         (
             "Decision".to_owned(),
@@ -93,9 +98,22 @@ fn question(summary: &Summary, cycle: &str) -> String {
     )
 }
 
+/// Levers that were driven for this report, with the car named as in tables and figures.
+pub(super) fn computed_options(found: &RunResults) -> Options {
+    let mut answer = found.answer.as_ref()?.levers.clone();
+    if answer.blocks.is_empty() {
+        return None;
+    }
+    let mut block = answer.blocks.swap_remove(0);
+    let subject = found.summary.runs.first()?;
+    subject.label().clone_into(&mut block.vehicle);
+    Some((answer, block))
+}
+
+/// Range of a difference: that of like cars, which holds the error of the model, before that of draws; of a change of one car only the draws.
 fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
     match &comparison.interval {
-        Some(drawn) => Some([drawn.percent[0], drawn.percent[2]]),
+        Some(drawn) => drawn.ends(),
         None => Some(comparison.fleet.as_ref()?.ends),
     }
 }
@@ -115,40 +133,63 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(_) => " (weighted)",
         None => "",
     };
-    let range = subject.fleet.as_ref().map_or_else(String::new, of_cars);
+    let drawn = || {
+        let [low, _, high] = subject.drawn?;
+        let digits = decimals([low, high]);
+        let [low, high] = [low, high].map(|x| grouped(x, digits));
+        Some(format!(" ({low} to {high} in 90 % of the runs with uncertain values varied)"))
+    };
+    let range = subject.fleet.as_ref().map(of_cars).or_else(drawn);
+    let range = range.unwrap_or_default();
     let recording = summary.recording.as_ref();
     let doubt = recording.map_or_else(String::new, |own| doubtful("Doubtful", own));
     let text = format!(
         "{doubt}The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
         subject.label()
     );
-    let first = summary.comparison.first().zip(summary.runs.get(1));
-    let Some((percent, comparison, baseline)) = first
-        .and_then(|(comparison, baseline)| Some((comparison.fuel_percent?, comparison, baseline)))
-    else {
-        return text + ".";
+    // A change is compared with the car before it, then with the first other car.
+    let is_changed = summary.runs.get(1).is_some_and(|run| run.role == UNCHANGED);
+    let sentence = |k: usize| {
+        let (comparison, baseline) = (summary.comparison.get(k)?, summary.runs.get(k + 1)?);
+        Some(difference(comparison, baseline, comparison.fuel_percent?))
     };
-    let other = format!("the {}", baseline.label());
+    let all = (0..if is_changed { 2 } else { 1 }).filter_map(sentence);
+    match all.collect::<Vec<_>>() {
+        list if list.is_empty() => text + ".",
+        list => format!("{text}: {}.", list.join("; ")),
+    }
+}
+
+/// The difference to another car, and how sure it is.
+fn difference(comparison: &Comparison, baseline: &RunSummary, percent: f64) -> String {
+    let other = match baseline.role.as_str() {
+        UNCHANGED => "the car unchanged".to_owned(),
+        _ => format!("the {}", baseline.label()),
+    };
     let difference = against(percent, interval(comparison), &other);
     let kind = likeness(comparison);
     let known = match &comparison.interval {
-        Some(interval) => {
-            let ends = level([interval.percent[0], interval.percent[2]]);
-            format!(
-                "With all uncertain values varied, 90 % of {} runs give {ends}",
-                interval.draws
-            )
-        }
+        Some(drawn) => match drawn.ends() {
+            Some(ends) => format!(
+                "with all uncertain values varied, 90 % of {} runs give {}",
+                drawn.draws,
+                level(ends)
+            ),
+            None => format!(
+                "no range can be given: {}",
+                drawn.failures_in_words().unwrap_or_default()
+            ),
+        },
         None => match &comparison.fleet {
             Some(range) => format!(
-                "Of such cars, by {} measured, 90 % have {}",
+                "of such cars, by {} measured, 90 % have {}",
                 range.cars,
                 level(range.ends)
             ),
-            None => "How sure that is, no measured cars tell".to_owned(),
+            None => "how sure that is, no measured cars tell".to_owned(),
         },
     };
-    format!("{text}: {difference}{kind}. {known}.")
+    format!("{difference}{kind}; {known}")
 }
 
 /// " (not like for like)", where that applies.
@@ -201,7 +242,8 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         drawn: comparison
             .interval
             .as_ref()
-            .map(|interval| interval.percent)
+            .filter(|drawn| drawn.ends().is_some())
+            .map(|drawn| drawn.percent)
             .or_else(|| {
                 let fleet = comparison.fleet.as_ref()?;
                 Some([fleet.ends[0], comparison.fuel_percent?, fleet.ends[1]])
@@ -245,13 +287,12 @@ fn checks(summary: &Summary) -> Vec<String> {
 }
 
 fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
-    let mut list: Vec<String> = doubts::cold(cars.get(..1).unwrap_or_default())
-        .into_iter()
-        .collect();
+    let failing = found.answer.as_ref().and_then(Answer::failures_in_words);
+    let mut list: Vec<String> = failing.map(|words| words + ".").into_iter().collect();
+    list.extend(doubts::cold(cars.get(..1).unwrap_or_default()));
     list.extend(found.validation.as_ref().map(validation::differing));
-    let now = cars.first().and_then(|car| car.run.min_clamp_safety);
     let block = options.iter().map(|(_, block)| block);
-    list.extend(block.flat_map(asked).filter_map(|row| risk(row, now)));
+    list.extend(block.flat_map(asked).filter_map(risk));
     if list.is_empty() {
         list.push("No validation is in this report, and no lever.".to_owned());
     }
@@ -265,25 +306,66 @@ fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     single(block).take(OPTIONS.1).chain(together)
 }
 
-/// Risk of a change: safety against belt slip, and parts to be built or proven.
-fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
-    let worst = row.worst("min_clamp_safety");
-    let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
-        let [now, worst] = [now, Some(worst)].map(|safety| Quantity::Ratio.text(safety));
-        format!("the least clamping safety falls from {now} to {worst} in the worst run")
+/// Risk of a change: draws in which it fails, safety against belt slip of the same draw, the value that its size depends on, and parts to be
+/// built or proven.
+fn risk(row: &LeverRow) -> Option<String> {
+    let fails = (row.failed > 0).then(|| {
+        let (failed, all) = (row.failed, row.failed + row.n);
+        let names: Vec<&str> = row.reasons.iter().map(|(name, _)| name.as_str()).collect();
+        let names = words(&names.join(", "));
+        format!("it fails in {failed} of {all} runs ({names})")
+    });
+    let safety = row.effect("min_clamp_safety");
+    // Draw by draw: the worst draw of the change against the worst one of the car as it is, not against its nominal value.
+    let falls = safety.filter(|own| {
+        own.change < -SAFETY || own.worst < own.reference_worst - SAFETY
+    });
+    let falls = falls.map(|own| {
+        let ratio = |x: f64| Quantity::Ratio.text(Some(x));
+        format!(
+            "the least clamping safety falls by {} in the same run (median), in the worst run to {}, where the car as it is has {}",
+            ratio(-own.change),
+            ratio(own.worst),
+            ratio(own.reference_worst)
+        )
+    });
+    let size = row.set_by.as_ref().filter(|of| of.share >= SIZE);
+    let size = size.map(|of| {
+        format!(
+            "its size depends most on {}, {} % of its variance",
+            of.factor,
+            grouped(100.0 * of.share.min(1.0), 0)
+        )
     });
     let needs = match row.is_combination() {
         true => "all that its changes need",
         false => row.of.needs.trim_end_matches('.'),
     };
     let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
-    let both: Vec<String> = falls.into_iter().chain(needs).collect();
+    let both: Vec<String> = [fails, falls, size, needs].into_iter().flatten().collect();
     let title = capital_first(&lever_title(row));
     (!both.is_empty()).then(|| format!("{title}: {}.", both.join("; ")))
 }
 
-fn no_test() -> String {
-    "Not known: a study of the case that samples its uncertain values says which of them is worth a test (`cvtcycle study uncertainty_rover`).".to_owned()
+fn no_test(answer: Option<&Answer>) -> String {
+    match answer {
+        Some(answer) => format!(
+            "No single value stands out in {} runs: none of them known would narrow the answer by more than chance.",
+            answer.draws
+        ),
+        None => "Not known: the uncertain values of this case were not varied.".to_owned(),
+    }
+}
+
+/// Next test by the sample of the report.
+fn test_of(information: &Information, summary: &Summary) -> Option<(String, String)> {
+    let best = information.causes().next()?;
+    let is_compared = summary.runs.iter().skip(1).any(|run| run.role != UNCHANGED);
+    let of = match is_compared {
+        true => ("fuel difference", "percentage points"),
+        false => ("fuel", "L/100 km"),
+    };
+    Some(test_words(information, best, of))
 }
 
 /// Next test: the reduction of the spread by knowing a value, and the test in a few words.
@@ -292,6 +374,15 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
         return None;
     }
     let (information, best) = study::cause(own)?;
+    let of = ("fuel difference", "percentage points");
+    Some(test_words(&information, &best, of))
+}
+
+fn test_words(
+    information: &Information,
+    best: &KnownFactor,
+    (what, unit): (&str, &str),
+) -> (String, String) {
     let digits = decimals([0.0, information.sd]) + 1;
     let [sd, left] = [information.sd, best.sd_left.value].map(|x| grouped(x, digits));
     let name = &best.name;
@@ -300,10 +391,10 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
         test => test.to_owned(),
     };
     let text = format!(
-        "{}. With the {name} known, the standard deviation of the fuel difference falls from {sd} to {left} percentage points.",
+        "{}. With the {name} known, the standard deviation of the {what} falls from {sd} to {left} {unit}.",
         capital_first(&test)
     );
-    Some((text, format!("Measure: {name}")))
+    (text, format!("Measure: {name}"))
 }
 
 fn decisions(options: &Options, test: Option<String>) -> Vec<String> {

@@ -170,7 +170,7 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
             1 => String::new(),
             _ => format!(" ({})", car.run.label()),
         };
-        (cold > 0.0).then(|| format!("{share} %{value_of}"))
+        (share != "0").then(|| format!("{share} %{value_of}"))
     };
     let shares: Vec<String> = cars.iter().filter_map(share).collect();
     let from = super::degc(MEASURED_FROM_DEGC);

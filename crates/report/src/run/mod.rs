@@ -1,6 +1,7 @@
 //! The report of a run: results first, then details.
 
 mod answer;
+mod computed;
 mod conditions;
 mod doubts;
 mod energy;
@@ -20,6 +21,7 @@ use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::{Comparison, RunSummary, StartWord, Summary};
 
 pub(crate) use answer::{brief, strip};
+pub(crate) use computed::{merge, study_of_run};
 pub(super) use conditions::change_table;
 pub(crate) use energy::per_km;
 pub use reproduce::hashes;
@@ -79,12 +81,16 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     );
     let of_run = |study| study_answers::levers_of_run(study, &found.summary);
     let options = found.studies.iter().find_map(of_run);
+    let options = options.or_else(|| answer::computed_options(found));
     let mut sections = vec![
         answer::section(found, &cars, &options),
         doubts::section(found, &cars),
         conditions::section(found, &cars),
     ];
     sections.extend(figures::sections(found, &cars));
+    if let (Some(answer), Some((_, block))) = (&found.answer, &options) {
+        sections.push(study::levers::computed(answer, block));
+    }
     for (k, own) in found.studies.iter().enumerate() {
         let known = match study_answers::other_case(own, &found.summary) {
             None => known(&found.summary),

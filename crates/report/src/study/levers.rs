@@ -1,5 +1,6 @@
 //! Results of a study of levers, as a section of a run's report or as a separate report.
 
+use cvtcycle_analysis::answer::Answer;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
 use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
@@ -28,6 +29,26 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     }
     section.more = all;
     Ok(section)
+}
+
+/// The section on levers that were driven for a report.
+pub fn computed(answer: &Answer, block: &LeverBlock) -> Section {
+    let mut levers = answer.levers.clone();
+    levers.blocks = vec![block.clone()];
+    let mut section = Section::new("levers", "Levers");
+    let words = answer_in_words(&levers, block).into_iter();
+    section.blocks.extend(words.map(Block::Text));
+    let (draws, plan) = (answer.draws, &answer.plan);
+    section.text(format!(
+        "{draws} draws of {plan}, its ranges relative to the values of this car, the same for all cars of this document.{}",
+        ended_badly(&levers.runs)
+    ));
+    for note in &levers.notes {
+        section.text(format!("Note: {note}."));
+    }
+    section.table(numbers(&levers, block, Some(SHOWN)));
+    section.more = details(&levers).blocks;
+    section
 }
 
 /// Builds the report of a study of levers.

@@ -1,7 +1,7 @@
 //! Results of a study, as a section of a run's report or as a separate report.
 
 mod conditions;
-mod levers;
+pub(super) mod levers;
 
 use serde_json::Value;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use cvtcycle_analysis::words::drawn::{Draws, prepare};
+use cvtcycle_analysis::answer::{Draws, Question, prepare};
 use cvtcycle_analysis::words::run::{assess_fleet, maps_left, sentences};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, is_twin, load, name_of};
@@ -131,6 +131,9 @@ impl LivePage {
             None => Draws::new(self.study(state)?),
         };
         let found = draws.advance()?;
+        let found = found.map(|answer| -> Vec<DrawnDifference> {
+            answer.differences.into_iter().map(|(_, drawn)| drawn).collect()
+        });
         if found.is_none() {
             self.draws = Some((state.clone(), draws));
         }
@@ -141,8 +144,10 @@ impl LivePage {
         let scene = &self.scene;
         let moved = self.moved(state)?;
         let [set_all, own] = scene.overrides()?;
-        let cars = self.wanted(state, &moved)?;
-        let baselines = cars.iter().skip(1).map(|car| car.named.clone());
+        let baselines = scene.baselines.iter().map(|word| match is_twin(word) {
+            true => TWIN.to_owned(),
+            false => word.clone(),
+        });
         let base = Base {
             vehicle: scene.vehicle.clone(),
             baselines: Some(baselines.collect()),
@@ -156,8 +161,7 @@ impl LivePage {
             dt_s: scene.dt_s,
             formulation: scene.formulation(),
         };
-        let setup = load(&cars[0].word, &cars[0].options)?;
-        prepare(base, DRAWS, setup.transmission().is_cvt())
+        prepare(&Question::differences(base, DRAWS))
     }
 
     /// Overrides of the moved levers, in the order of the page.

@@ -24,5 +24,6 @@ pub use crate::live_section::{
     Answer, Control, ControlChange, ControlKind, LiveSection, Slider, State,
 };
 pub use answer::LivePage;
+pub(crate) use of_run::base_of_run;
 pub use of_run::section_of_dir;
 pub use scene::{DRAWS, Scene};

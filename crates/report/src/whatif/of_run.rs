@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use cvtcycle_config::setup::{Options, TWIN, baseline_of, load};
+use cvtcycle_config::setup::{Options, TWIN, baseline_of, is_twin, load};
 use cvtcycle_config::{Problems, cycle};
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256};
 use cvtcycle_output::record::{CarRecord, Record};
-use cvtcycle_output::summary::Summary;
+use cvtcycle_output::summary::{Summary, UNCHANGED};
+use cvtcycle_study::plan::Base;
 
 use super::scene::Scene;
 use crate::live_section::{LiveSection, State};
@@ -30,6 +31,37 @@ pub fn section_of_dir(dir: &Path, first_figure: usize) -> Result<LiveSection, Pr
     LiveSection::new(scene)
 }
 
+/// Cars and conditions of a run, as a study has them.
+///
+/// # Errors
+/// A car or the cycle has changed since the run.
+pub(crate) fn base_of_run(
+    dir: &Path,
+    summary: &Summary,
+    record: &Record,
+) -> Result<Base, Problems> {
+    let scene = scene(dir, summary, record, 0)?;
+    let [set_all, set] = scene.overrides()?;
+    Ok(Base {
+        vehicle: scene.vehicle.clone(),
+        baselines: Some(scene.baselines.iter().map(twin_or_word).collect()),
+        cycle: scene.state.cycle.clone(),
+        ambient_degc: scene.state.ambient_degc,
+        start: scene.start.clone(),
+        lubricant: scene.state.lubricant.clone(),
+        engine_oil: scene.engine_oil.clone(),
+        set,
+        set_all,
+        dt_s: scene.dt_s,
+        formulation: scene.formulation(),
+    })
+}
+
+/// The word of a baseline in a plan.
+fn twin_or_word(word: &String) -> String {
+    if is_twin(word) { TWIN } else { word }.to_owned()
+}
+
 fn scene(
     dir: &Path,
     summary: &Summary,
@@ -45,14 +77,17 @@ fn scene(
         return Err(changed("the car", "run it again"));
     };
     let vehicle = word(&subject.vehicle.file);
-    let is_twin =
+    let roles = summary.runs.iter().map(|run| run.role.as_str());
+    let others = baselines.iter().zip(roles.skip(1));
+    let others = others.filter(|(_, role)| *role != UNCHANGED);
+    let is_own =
         |car: &&CarRecord| car.vehicle == subject.vehicle && car.lubricant != subject.lubricant;
-    let baseline = |car: &CarRecord| match is_twin(&car) {
+    let baseline = |car: &CarRecord| match is_own(&car) {
         true => baseline_of(&vehicle, TWIN),
         false => word(&car.vehicle.file),
     };
     let mut scene = Scene {
-        baselines: baselines.iter().map(baseline).collect(),
+        baselines: others.map(|(car, _)| baseline(car)).collect(),
         vehicle,
         set: settings.set.clone(),
         set_all: settings.set_all.clone(),

@@ -58,6 +58,21 @@ impl Information {
         (quiet && needed.is_finite()).then_some(needed)
     }
 
+    /// From a sample of an output with a number for each point of the plan, NaN where there is none; none of an output that does not vary,
+    /// and of too few draws.
+    pub fn of_sample(plan: &Plan, found: &[f64], confidence: Confidence) -> Option<Self> {
+        let found = &found[..found.len().min(MAX_DRAWS)];
+        let points: Vec<u64> = (0..found.len() as u64).collect();
+        let of = chance(plan, &points, found, confidence)?;
+        let sd = Summary::new(found, confidence).sd;
+        let share = |k: usize| Estimate {
+            value: of.shares[k],
+            interval: None,
+        };
+        let above = |k: usize| of.shares[k] > of.noise;
+        Some(Self::new(plan, (of.n, sd, of.noise), share, above))
+    }
+
     /// From any sample of an output; none of an output that does not vary, and of too few draws.
     pub(super) fn of_draws(
         plan: &Plan,
@@ -66,16 +81,9 @@ impl Information {
         confidence: Confidence,
     ) -> Result<Option<Self>, Problem> {
         let found = found.first(MAX_DRAWS)?;
-        let points: Vec<u64> = (0..found.len() as u64).collect();
-        let of = chance(plan, &points, &found, confidence);
-        Ok(of.map(|of| {
-            let share = |k: usize| Estimate {
-                value: of.shares[k],
-                interval: None,
-            };
-            let above = |k: usize| of.shares[k] > of.noise;
-            Self::new(plan, (of.n, summary.sd, of.noise), share, above)
-        }))
+        let of = Self::of_sample(plan, &found, confidence);
+        // The deviation is that of all draws.
+        Ok(of.map(|of| of.with_sd(summary.sd)))
     }
 
     /// From the indices of a Saltelli design, and what it found in its first two blocks, a sample that shows what chance gives; none of an
@@ -129,6 +137,14 @@ impl Information {
             factors,
         };
         information.sorted()
+    }
+
+    /// As it is, of an output with another deviation.
+    fn with_sd(mut self, sd: f64) -> Self {
+        for factor in &mut self.factors {
+            factor.sd_left.value = sd_left(sd, factor.share.value);
+        }
+        Information { sd, ..self }
     }
 
     /// The largest share first, those without one last.

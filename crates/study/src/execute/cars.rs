@@ -65,6 +65,8 @@ pub struct Column {
     pub options: Options,
     /// Factors that do not act on it.
     pub left_out: Vec<usize>,
+    /// True to keep its side effects, for which it is driven by itself and not next to its other draws.
+    pub is_watched: bool,
 }
 
 /// A car of a study.
@@ -79,6 +81,8 @@ pub struct StudyCar {
     pub ambient_degc: Option<f64>,
     /// Factors that would act on it, but for a key that it does not have, or for 0 of which they are a share.
     pub idle: Vec<usize>,
+    /// True if its side effects are kept.
+    pub(super) is_watched: bool,
     pub(super) bindings: Vec<Binding>,
     /// Overrides applied to the drawn value, by factor.
     then: Vec<Vec<Override>>,
@@ -110,6 +114,7 @@ impl StudyCar {
             word: word.to_owned(),
             ambient_degc: None,
             idle: Vec::new(),
+            is_watched: false,
             bindings: Vec::new(),
             then: vec![Vec::new(); plan.factors.len()],
             held: held(plan),
@@ -145,6 +150,7 @@ impl StudyCar {
             word: column.word.clone(),
             ambient_degc: Some(column.ambient_degc),
             idle: Vec::new(),
+            is_watched: column.is_watched,
             bindings: Vec::new(),
             then,
             held: held(plan),

@@ -22,7 +22,7 @@ pub use notes::idle;
 pub use pilot::Pilot;
 pub(crate) use point::{reason, status};
 pub use prepare::{Columns, Study};
-pub use relative::relative;
+pub use relative::{relative, with_ranges};
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

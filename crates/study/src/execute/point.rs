@@ -9,7 +9,7 @@ use super::side_effects::SideEffects;
 use crate::plan::{Acts, Factor, FactorValue, Plan};
 use cvtcycle_config::Problem;
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_config::setup::{Param, Setup};
+use cvtcycle_config::setup::{Param, Setup, start_nodes};
 use cvtcycle_model::drive::{Conditions, Outcome, Row, Run, Start, drive_each, drive_into};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
@@ -41,8 +41,8 @@ impl Study {
         let mut runs: Vec<Vec<PointRun>> = (values.iter())
             .map(|_| Vec::with_capacity(self.cars.len()))
             .collect();
-        // Observers of rows need single drives: each point with all its cars, one by one.
-        if traces.is_some() || self.sides.is_some() {
+        // Traces need single drives: each point with all its cars, one by one.
+        if traces.is_some() {
             for (k, point) in points.enumerate() {
                 for (index, car) in self.cars.iter().enumerate() {
                     if let Some(traces) = &mut traces {
@@ -59,6 +59,13 @@ impl Study {
             return runs;
         }
         for index in 0..self.cars.len() {
+            // Side effects come from rows, which cars side by side do not give.
+            if self.cars[index].is_watched {
+                for (values, runs) in values.iter().zip(&mut runs) {
+                    runs.push(self.car_at(index, values).run(None, None).0);
+                }
+                continue;
+            }
             let ready: Vec<Ready> = (values.iter())
                 .map(|values| self.car_at(index, values).ready())
                 .collect();
@@ -69,7 +76,7 @@ impl Study {
                     Some(outcome) => at.finished(ready, (&outcome, None), subjects[k].as_ref()),
                     None => (at.refused(ready), None),
                 };
-                if index == 0 {
+                if index == 0 && self.sides.is_none() {
                     subjects[k] = summary;
                 }
                 runs[k].push(run);
@@ -174,7 +181,8 @@ impl CarAtPoint<'_> {
         let Ok(setup) = &ready.built else {
             return (self.refused(ready), None);
         };
-        let mut sides = self.study.sides.map(SideEffects::new);
+        let sides = self.study.sides.filter(|_| self.car.is_watched);
+        let mut sides = sides.map(SideEffects::new);
         let outcome = {
             let mut push = watched(cycle, traces, sides.as_mut());
             drive_into(setup, cycle, &ready.conditions, Some(&mut push))
@@ -229,8 +237,11 @@ impl CarAtPoint<'_> {
         let status = status(&summary);
         let row = (summary, excess);
         let numbers = (self.study.outputs.iter()).map(|column| column.number_of(&row));
-        let extra = sides.into_iter().flat_map(SideEffects::numbers);
-        let numbers = numbers.chain(extra).collect();
+        let mut numbers: Vec<f64> = match sides {
+            Some(sides) => numbers.chain(sides.numbers()).collect(),
+            None => numbers.collect(),
+        };
+        numbers.resize(self.study.numbers(), f64::NAN);
         let run = PointRun {
             status,
             factors: ready.factors,
@@ -387,6 +398,7 @@ fn start(word: &str) -> Start {
     match word {
         "soak" => Start::Soak,
         "warm" => Start::Warm,
+        nodes if nodes.contains('=') => start_nodes(nodes).map_or(Start::Soak, Start::Nodes),
         // The plan has checked that it is a number.
         degc => degc
             .parse()

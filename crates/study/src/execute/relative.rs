@@ -3,7 +3,7 @@
 
 use super::prepare::{folder_of, in_folder};
 use crate::plan::{
-    Acts, Cars, Distribution, Factor, FactorValue, FactorValues, Plan, RUN_OPTIONS, unit,
+    Acts, Cars, Distribution, Factor, FactorValue, FactorValues, Places, Plan, RUN_OPTIONS, unit,
 };
 use cvtcycle_config::setup::{NamedBy, Options, ParamSet, Setup, TWIN, baseline_of};
 use cvtcycle_config::{Problems, Target, unit_of};
@@ -64,6 +64,61 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
     };
     Ok((relative, subject.vehicle().transmission().is_cvt()))
 }
+
+/// A relative plan with the ranges that the files of some cars give their values, in place of those of the plan and besides them: what is known of a
+/// class, an engine or a fluid goes with it. The first car that has a key decides. `of_cvts`: whether the subject of the plan has a CVT.
+#[must_use]
+pub fn with_ranges(plan: Plan, of_cvts: bool, cars: &[&Setup]) -> Plan {
+    let mut factors = plan.factors.clone();
+    let mut known: Vec<(String, Cars)> = Vec::new();
+    for car in cars {
+        let own = match car.transmission().is_cvt() == of_cvts {
+            true => Cars::Subject,
+            false => Cars::Baselines,
+        };
+        for info in &car.keys {
+            let (Some([low, high]), Ok(mode)) = (info.range, info.value.parse::<f64>()) else {
+                continue;
+            };
+            let cars = match OF_A_BOX.iter().any(|prefix| info.key.starts_with(prefix)) {
+                true => own,
+                false => Cars::All,
+            };
+            let id = (info.key.clone(), cars);
+            if known.contains(&id) {
+                continue;
+            }
+            let place = factors.iter().position(|factor| (&factor.key, factor.cars) == (&id.0, cars));
+            let of_plan = place.map(|at| &factors[at]);
+            let absolute = Factor {
+                key: info.key.clone(),
+                name: of_plan.map_or_else(|| info.doc.clone(), |factor| factor.name.clone()),
+                unit: info.unit.clone(),
+                cars,
+                acts: Acts::Value,
+                values: FactorValues::Distribution(Distribution::Triangular { low, mode, high }),
+                status: match info.status.as_str() {
+                    status @ ("source" | "derived" | "fitted") => status.to_owned(),
+                    _ => "assumed".to_owned(),
+                },
+                source: info.source.clone(),
+                test: of_plan.map_or_else(String::new, |factor| factor.test.clone()),
+                place: plan.places.place("").clone(),
+                places: Places::new(plan.places.place("").clone()),
+            };
+            let factor = over(&absolute, mode);
+            match place {
+                Some(at) => factors[at] = factor,
+                None => factors.push(factor),
+            }
+            known.push(id);
+        }
+    }
+    Plan { factors, ..plan }
+}
+
+/// Tables of a car that are of its box: the same key of another box is another value.
+const OF_A_BOX: [&str; 4] = ["transmission.", "lubricant.", "thermal.transmission.", "thermal.cooler."];
 
 /// Standard deviations at which the range of a table's friction is cut off.
 const CUT: f64 = 3.0;
