@@ -212,7 +212,7 @@ fn stopped() -> CommandOutput {
     }
 }
 
-/// Reasons for exit code 1. A parameter at a bound gives a warning only.
+/// Reasons for exit code 1.
 fn failures(outcome: &Outcome) -> Vec<String> {
     let mut list = Vec::new();
     if !outcome.converged {
@@ -229,6 +229,7 @@ fn failures(outcome: &Outcome) -> Vec<String> {
             "no observation depends on {names}: fix it, or add data that depend on it"
         ));
     }
+    list.extend(outcome.misfit());
     let doubtful = outcome.residuals.iter().filter(|r| r.doubtful > 0);
     if let [first, rest @ ..] = doubtful.collect::<Vec<_>>().as_slice() {
         let more = match rest.len() {

@@ -83,7 +83,7 @@ impl Execute for CompareArgs {
     fn run(&self, found: RunComparison, terminal: Terminal) -> CommandResult {
         let json = json_text(&found)?;
         let failures = found.runs.iter().flat_map(|run| {
-            let failed = run.failed_checks.iter();
+            let failed = run.faults.iter();
             failed.map(|check| format!("check failed: {}: {check}", run.name))
         });
         let results = Results::new(json, failures.collect(), WrittenFiles::default());
@@ -97,13 +97,22 @@ fn text(found: &RunComparison, paint: Paint) -> String {
         let runs: Vec<&Side> = reference.iter().chain(chunk).collect();
         (format!("Against {}", found.reference), table(found, &runs))
     });
+    let faults = found.runs.iter().filter(|run| !run.faults.is_empty());
+    let faults = faults.map(|run| {
+        let list = run.faults.join(", ");
+        let line = format!(
+            "{}: {list}; not the numbers of a car that drives this cycle",
+            run.name
+        );
+        wrapped(&line, "FAILED: ")
+    });
     let cause = found.cause().map(|cause| wrapped(&cause, ""));
     let conditions = found.conditions.iter().map(|different| {
         let line = format!("{}: {}", different.key, different.values.join(", "));
         wrapped(&line, "not alike: ")
     });
     let body = sections(tables.collect::<Vec<_>>(), paint);
-    let notes = conditions.chain(cause).collect::<String>();
+    let notes = faults.chain(conditions).chain(cause).collect::<String>();
     body.trim_start().to_owned() + "\n" + &notes
 }
 
@@ -132,6 +141,25 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
         true => String::new(),
         false => signed(run.difference_percent, 2),
     });
+    if runs.iter().any(|run| run.drawn.is_some()) {
+        add("90 % of varied runs", "", &|run| {
+            let drawn = run.drawn.as_ref();
+            drawn.map_or_else(String::new, |drawn| match drawn.ends() {
+                Some(ends) => between(ends, "%"),
+                None => format!(
+                    "{} of {} fail",
+                    drawn.left_out,
+                    drawn.left_out + drawn.draws
+                ),
+            })
+        });
+    }
+    if runs.iter().any(|run| !run.faults.is_empty()) {
+        add("verdict", "", &|run| match run.faults.is_empty() {
+            true => "drives the cycle".to_owned(),
+            false => "FAILED".to_owned(),
+        });
+    }
     if runs.iter().any(|run| run.fleet.is_some()) {
         add("90 % of such cars", "", &|run| {
             let range = run.fleet.as_ref();

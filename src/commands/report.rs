@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ColorChoice};
 use cvtcycle::analysis::answer::{self, Answer};
 use cvtcycle::report::document::Document;
-use cvtcycle::report::{Drives, report_with};
 use cvtcycle::report::whatif::{LiveSection, section_of_dir};
 use cvtcycle::report::write::{Form, Target};
+use cvtcycle::report::{Drives, report_with};
 
 use super::run::RunArgs;
 use super::vehicles::ComparedArgs;
@@ -22,7 +22,18 @@ use tempfile::TempDir;
 
 /// Options of the run that a report is made of, where no directory is given.
 const RUN_OPTIONS: [&str; 13] = [
-    "vehicle", "lubricant", "set", "cycle", "baseline", "engine_oil", "set_all", "columns", "repair", "ambient", "start", "dt",
+    "vehicle",
+    "lubricant",
+    "set",
+    "cycle",
+    "baseline",
+    "engine_oil",
+    "set_all",
+    "columns",
+    "repair",
+    "ambient",
+    "start",
+    "dt",
     "formulation",
 ];
 
@@ -182,7 +193,7 @@ impl Execute for ReportArgs {
             .split_first()
             .map_or(("", &[][..]), |(first, rest)| (first, rest));
         let missing = &document.warnings;
-        let json = serde_json::json!({ "report": report, "figures": figures, "missing": missing });
+        let json = serde_json::json!({ "report": report, "figures": figures, "missing": missing, "answer": document.answer });
         let (json, warnings) = (json_text(&json)?, document.warnings.clone());
         let results = Results::new(json, warnings, WrittenFiles::default());
         let table = || format!("{report}\n{} figures next to it\n", figures.len());

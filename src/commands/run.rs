@@ -10,13 +10,13 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clap::Args;
-use cvtcycle::analysis::run::{RunQuestion, summary};
 use cvtcycle::analysis::answer::{Question, drive, prepare};
-use cvtcycle::output::progress::NoProgress;
+use cvtcycle::analysis::run::{RunQuestion, summary};
 use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{TWIN, is_twin};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{StartWord, name_run, start_on};
 use cvtcycle::study::execute::Study;
@@ -242,7 +242,8 @@ impl Execute for RunArgs {
         };
         let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {
-            let drawn = drive(study, &NoProgress)?.map_or_else(Vec::new, |answer| answer.differences);
+            let drawn =
+                drive(study, &NoProgress)?.map_or_else(Vec::new, |answer| answer.differences);
             for (comparison, (_, drawn)) in summary.comparison.iter_mut().zip(drawn) {
                 comparison.interval = Some(drawn);
             }

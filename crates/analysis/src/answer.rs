@@ -15,10 +15,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::Serialize;
 
 use crate::levers::{
-    Combine, Lever, LeverAnswer, LeverNotes, LeverRequest, OtherCar, OtherKind, lever_answer,
-    prepare as prepare_levers,
+    Combine, Lever, LeverAnswer, LeverFile, LeverNotes, LeverRequest, OtherCar, OtherKind,
+    lever_answer, prepare as prepare_levers,
 };
-use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, baseline_of, is_twin, load, name_of};
+use cvtcycle_config::setup::{
+    Kind, NamedBy, Options, Setup, TWIN, baseline_of, is_twin, load, name_of,
+};
 use cvtcycle_config::{Override, Problem, Problems};
 use cvtcycle_output::Component;
 use cvtcycle_output::progress::{NoProgress, Progress};
@@ -31,13 +33,14 @@ use cvtcycle_study::statistics::{Confidence, Share, Summary};
 use cvtcycle_study::store::{Rows, Values};
 use cvtcycle_study::{StudyManifest, StudyTable, TableSource};
 
-
 /// The plan that is drawn.
 pub const PLAN: &str = "uncertainty_rover";
 /// Version of an [`Answer`] as JSON.
 pub const SCHEMA: u32 = 1;
 /// Draws of an answer: with 256 the ends of 90 % have intervals of their own (ES-3), and a failure in 1 % of all cases is seen.
 pub const DRAWS: u64 = 256;
+/// Engine speed, rpm, below which a loaded engine behind a closed clutch is heard and felt, where no other is given.
+pub const HEARD_RPM: f64 = 1300.0;
 /// Seed of the draws.
 pub const SEED: u64 = 1;
 
@@ -109,20 +112,25 @@ impl Answer {
     }
 }
 
+/// The changes of a design that the program knows.
+///
+/// # Errors
+/// Problems of an embedded file: a defect of the program.
+pub fn shipped_levers() -> Result<Vec<Lever>, Problems> {
+    let mut all = Vec::new();
+    for name in Kind::Levers.names() {
+        all.extend(LeverFile::open(name)?.levers);
+    }
+    Ok(all)
+}
+
 /// The study of a question.
 ///
 /// # Errors
 /// All problems of cars, levers and conditions.
 pub fn prepare(question: &Question) -> Result<Study, Problems> {
     let base = &question.base;
-    let chain = |own: &[Override]| base.set_all.iter().chain(own).cloned().collect();
-    let of_car = |lubricant: Option<String>, set: &[Override]| Options {
-        lubricant,
-        engine_oil: base.engine_oil.clone(),
-        set: chain(set),
-        formulation: base.formulation,
-        named_by: NamedBy::File,
-    };
+    let of_car = |lubricant: Option<String>, set: &[Override]| options_of(base, lubricant, set);
     let subject = of_car(base.lubricant.clone(), &base.set);
     let setup = load(&base.vehicle, &subject)?;
     let is_changed = base.lubricant.is_some() || !base.set.is_empty();
@@ -143,21 +151,14 @@ pub fn prepare(question: &Question) -> Result<Study, Problems> {
     }
     let levers = question.levers.iter();
     let own = levers.filter(|lever| {
-        lever.of_cvt.is_none_or(|cvt| cvt == setup.transmission().is_cvt())
+        lever
+            .of_cvt
+            .is_none_or(|cvt| cvt == setup.transmission().is_cvt())
     });
     prepare_levers(&LeverRequest {
         levers: own.cloned().collect(),
-        vehicles: vec![base.vehicle.clone()],
-        ambients_degc: vec![base.ambient_degc],
-        cycle: base.cycle.clone(),
-        start: base.start.clone(),
-        dt_s: base.dt_s,
-        base: subject,
-        set_all: base.set_all.clone(),
-        others,
-        draws: Some((Plan::open(PLAN)?, question.draws, SEED)),
-        combine: Combine::Automatic,
         heard_rpm: question.heard_rpm,
+        ..request(base, (subject, others), question.draws)?
     })
 }
 
@@ -186,11 +187,7 @@ fn baseline(
 }
 
 /// The subject without each of its losses in turn.
-fn without_losses(
-    base: &Base,
-    setup: &Setup,
-    subject: &Options,
-) -> Result<Vec<OtherCar>, Problem> {
+fn without_losses(base: &Base, setup: &Setup, subject: &Options) -> Result<Vec<OtherCar>, Problem> {
     let is_cvt = setup.transmission().is_cvt();
     let kind = if is_cvt { "cvt" } else { "manual" };
     let components: Vec<Component> = setup.transmission().components().into_iter().collect();
@@ -218,7 +215,7 @@ impl Question {
             levers: Vec::new(),
             prices: false,
             draws,
-            heard_rpm: 1300.0,
+            heard_rpm: HEARD_RPM,
         }
     }
 }
@@ -260,6 +257,77 @@ impl Draws {
             false => None,
         })
     }
+}
+
+/// The subjects of several runs of one cycle over the same draws: the difference of each to the first, in the order of `others`. A value that one
+/// of them has been given is certain in all.
+///
+/// # Errors
+/// Problems of the cars and of the plan.
+pub fn compare(
+    first: &Base,
+    others: &[Base],
+    draws: u64,
+) -> Result<Vec<DrawnDifference>, Problems> {
+    let mut cars = Vec::new();
+    for (k, base) in others.iter().enumerate() {
+        let options = options_of(base, base.lubricant.clone(), &base.set);
+        let setup = load(&base.vehicle, &options)?;
+        cars.push(OtherCar {
+            kind: OtherKind::OtherRun,
+            name: k.to_string(),
+            word: base.vehicle.clone(),
+            options,
+            is_cvt: setup.transmission().is_cvt(),
+        });
+    }
+    let given: Vec<Override> = others.iter().flat_map(|base| &base.set).cloned().collect();
+    let subject = options_of(first, first.lubricant.clone(), &first.set);
+    let study = prepare_levers(&LeverRequest {
+        set_all: first.set.iter().chain(&given).cloned().collect(),
+        ..request(first, (subject, cars), draws)?
+    })?;
+    let answer = drive(&study, &NoProgress)?;
+    Ok(answer.map_or_else(Vec::new, |answer| {
+        answer
+            .differences
+            .into_iter()
+            .map(|(_, drawn)| drawn)
+            .collect()
+    }))
+}
+
+/// Oils and overrides of a car of a run.
+fn options_of(base: &Base, lubricant: Option<String>, set: &[Override]) -> Options {
+    Options {
+        lubricant,
+        engine_oil: base.engine_oil.clone(),
+        set: base.set_all.iter().chain(set).cloned().collect(),
+        formulation: base.formulation,
+        named_by: NamedBy::File,
+    }
+}
+
+/// The request of a car under the conditions of its base, without levers.
+fn request(
+    base: &Base,
+    (subject, others): (Options, Vec<OtherCar>),
+    draws: u64,
+) -> Result<LeverRequest, Problems> {
+    Ok(LeverRequest {
+        levers: Vec::new(),
+        vehicles: vec![base.vehicle.clone()],
+        ambients_degc: vec![base.ambient_degc],
+        cycle: base.cycle.clone(),
+        start: base.start.clone(),
+        dt_s: base.dt_s,
+        base: subject,
+        set_all: base.set_all.clone(),
+        others,
+        draws: Some((Plan::open(PLAN)?, draws, SEED)),
+        combine: Combine::Automatic,
+        heard_rpm: HEARD_RPM,
+    })
 }
 
 /// Drives all draws; `None` where the progress has stopped them.
@@ -313,8 +381,13 @@ impl Memory<'_> {
         let mut differences = Vec::new();
         let mut first = None;
         let compared = of_kind(OtherKind::Unchanged).chain(of_kind(OtherKind::Baseline));
+        // Another run is compared with the first, a car with those it is compared with.
+        let compared = compared.chain(of_kind(OtherKind::OtherRun));
         for (car, note) in compared {
-            let percent = pairs(note.reference, car);
+            let percent = match note.kind == OtherKind::OtherRun.name() {
+                true => pairs(car, note.reference),
+                false => pairs(note.reference, car),
+            };
             let more = Share::above_zero(&percent, None);
             let drawn = DrawnDifference {
                 plan: PLAN.to_owned(),

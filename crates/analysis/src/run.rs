@@ -5,8 +5,8 @@ use cvtcycle_config::setup::start_of_log;
 use cvtcycle_model::drive::{Conditions, Row, drive};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{
-    Driven, MeasuredSummary, Over, UNCHANGED, RunSummary, Settings, StartWord, Summary, find_maps_left,
-    summarise,
+    Driven, MeasuredSummary, Over, RunSummary, Settings, StartWord, Summary, UNCHANGED,
+    find_maps_left, summarise,
 };
 
 use crate::attribute::{Attribution, Depth, attribute};

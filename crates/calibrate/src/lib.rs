@@ -36,6 +36,8 @@ use solve::{Bound, Failure, Fit, FitEnd, Uncertainty};
 
 /// Probability of the sum of squares below which there is a warning.
 const UNLIKELY: f64 = 0.01;
+/// Probability of a sum of squares below which the model does not fit its data. ASSUMED: one in ten thousand by chance.
+const IMPOSSIBLE: f64 = 1e-4;
 /// A start within this share of the least cost found the same minimum.
 const SAME_COST: f64 = 1e-3;
 /// Distance from its prior, in its standard deviations, above which there is a warning.
@@ -281,6 +283,30 @@ fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
     m.row_iter()
         .map(|row| row.iter().map(finite).collect())
         .collect()
+}
+
+impl Outcome {
+    /// Why the model does not fit these data: a parameter that the data would carry beyond a bound of the plan, or residuals beyond all chance. A
+    /// coefficient that is found to be 0 is a result: the mechanism is not seen.
+    pub fn misfit(&self) -> Vec<String> {
+        let at_bound = self
+            .parameters
+            .iter()
+            .filter(|p| p.at_bound.is_some() && p.value != 0.0);
+        let mut list: Vec<String> = at_bound
+            .map(|p| {
+                let (name, value, bound) = (&p.name, p.value, p.at_bound.unwrap_or_default());
+                format!("the model does not fit these data: {name} lies at its {bound} bound, {value}; widen the bound if it is not physical, or change the model")
+            })
+            .collect();
+        if let Some(p) = self.chi2_probability.filter(|p| *p < IMPOSSIBLE) {
+            let factor = (self.cost_after / self.degrees_of_freedom as f64).sqrt();
+            list.push(format!(
+                "the model does not fit these data: residuals are {factor:.1} times their standard deviations, which has a probability of {p:.1e}; state larger deviations if the data are worse than said, or change the model"
+            ));
+        }
+        list
+    }
 }
 
 /// Warnings, one sentence each.

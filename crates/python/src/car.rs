@@ -7,8 +7,9 @@ use cvtcycle::analysis::accelerate::{
     AXLE_SHARE, Conditions, DRIVEN, GRADE_PERCENT, GRIP, HEIGHT_OVER_BASE, SHIFT_S, SPEED_KMH,
     STEP_S, Span, times, usual_grip, usual_spans,
 };
+use cvtcycle::analysis::answer::{HEARD_RPM, Question, drive, prepare, shipped_levers};
 use cvtcycle::config::setup::{
-    self, AMBIENT, Disk, NamedBy, Options, ParamSet, Setup, baseline_of,
+    self, AMBIENT, Disk, NamedBy, Options, ParamSet, STEP, Setup, baseline_of,
 };
 use cvtcycle::config::{Override, Problem, Problems};
 use cvtcycle::explain::key_json;
@@ -18,6 +19,8 @@ use cvtcycle::model::thermal::{NODES, StartTemperatures};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::escape::json_text;
+use cvtcycle::output::progress::NoProgress;
+use cvtcycle::study::plan::Base;
 use pyo3::prelude::*;
 use serde_json::Value;
 
@@ -216,6 +219,57 @@ impl Car {
         let setup = Arc::clone(&self.setup);
         let found = py.detach(move || json_text(&times(&setup, &spans, &conditions)));
         found.map_err(refused)
+    }
+
+    /// Ranges, prices of the losses, changes of the design and the next test from draws of what is uncertain: JSON of the answer.
+    #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
+    fn answer(
+        &self,
+        py: Python<'_>,
+        cycle: String,
+        ambient_degc: f64,
+        start: &Bound<'_, PyAny>,
+        baselines: Option<Vec<String>>,
+        draws: u64,
+        levers: bool,
+        dt_s: f64,
+    ) -> PyResult<String> {
+        if self.is_text() {
+            let problem = self.needs_file_problem("the draws read the car from its file");
+            return Err(refused(problem));
+        }
+        if !(2..=100_000).contains(&draws) {
+            let message = "so many draws are not driven";
+            return Err(bad("draws", &draws.to_string(), "2 to 100000", message));
+        }
+        let question = Question {
+            base: Base {
+                vehicle: self.word.clone(),
+                baselines,
+                cycle,
+                ambient_degc: number("ambient_degc", ambient_degc, AMBIENT, "degC")?,
+                start: crate::run::start(start)?.1.text(),
+                lubricant: self.options.lubricant.clone(),
+                engine_oil: self.options.engine_oil.clone(),
+                set: self.options.set.clone(),
+                set_all: Vec::new(),
+                dt_s: number("dt_s", dt_s, STEP, "s")?,
+                formulation: self.options.formulation,
+            },
+            levers: match levers {
+                true => shipped_levers().map_err(refused)?,
+                false => Vec::new(),
+            },
+            prices: true,
+            draws,
+            heard_rpm: HEARD_RPM,
+        };
+        let found = py.detach(move || {
+            let study = prepare(&question)?;
+            drive(&study, &NoProgress)
+        });
+        let answer = found.map_err(refused)?;
+        json_text(&answer).map_err(refused)
     }
 
     /// Reads the text of a vehicle file. Problems cite it as `name`; its maps are in `folder`.

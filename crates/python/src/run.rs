@@ -233,6 +233,7 @@ impl RunData {
                 strict: false,
             },
             price: self.price,
+            has_unchanged: false,
             published: None,
         };
         summary(&question, &self.driven())

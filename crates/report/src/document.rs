@@ -1,5 +1,6 @@
 //! Content of a report, independent of its form.
 
+use cvtcycle_analysis::answer::Answer;
 use std::collections::BTreeSet;
 
 use crate::charts::Picture;
@@ -8,6 +9,8 @@ use crate::live_section::LiveSection;
 /// A report.
 #[derive(Clone, Debug, Default)]
 pub struct Document {
+    /// The answer behind it, where it was computed for the document.
+    pub answer: Option<Box<Answer>>,
     /// Title.
     pub title: String,
     /// Subject, one line.

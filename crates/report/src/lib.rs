@@ -138,7 +138,9 @@ fn compute(run: &mut RunResults, drives: Drives) -> Result<(), Problems> {
     }
     match run::study_of_run(run) {
         Ok(study) => run.answer = drives(&study)?,
-        Err(why) => run.missing.push(format!("options were not computed: {why}")),
+        Err(why) => run
+            .missing
+            .push(format!("options were not computed: {why}")),
     }
     if let Some(answer) = &run.answer {
         run::merge(&mut run.summary, answer);

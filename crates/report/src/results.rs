@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::problems::{belongs, consistent, problem, unreadable};
+use cvtcycle_analysis::answer::Answer;
 use cvtcycle_config::bounded;
 use cvtcycle_config::{Input, Place, Problem, ProblemKind, Problems, Setting};
 use cvtcycle_output::files::{self, hex, sum_of};
@@ -19,7 +20,6 @@ use cvtcycle_study::execute::manifest::TRACES;
 use cvtcycle_study::statistics::Confidence;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
 use cvtcycle_study::{Answer as StudyAnswer, StudyManifest, StudyTable, answer};
-use cvtcycle_analysis::answer::Answer;
 
 /// Summary of a run or a validation.
 const SUMMARY: &str = "summary.json";

@@ -116,10 +116,18 @@ fn information(found: &Information, confidence: Confidence, unit: &str) -> Strin
     table.row(["if this were known", "% of variance", &left, "next test"]);
     let causes: Vec<_> = found.causes().take(MAX_CAUSES).collect();
     for factor in &causes {
-        let (share, left) = (
-            fixed(100.0 * factor.share.value, 0),
-            fixed(factor.sd_left.value, 3),
-        );
+        // An estimate of a share may lie beyond what a share can be.
+        let percent = |x: f64| fixed(100.0 * x.clamp(0.0, 1.0), 0);
+        let share = match factor.share.interval {
+            Some([low, high]) => format!(
+                "{} ({} to {})",
+                percent(factor.share.value),
+                percent(low),
+                percent(high)
+            ),
+            None => percent(factor.share.value),
+        };
+        let left = fixed(factor.sd_left.value, 3);
         table.row([factor.name.clone(), share, left, factor.test.clone()]);
     }
     let rest = found.factors.len() - causes.len();

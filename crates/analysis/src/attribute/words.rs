@@ -17,14 +17,24 @@ pub fn answer(run: &RunSummary) -> Option<String> {
         let own = price.losses.get(c.name())?;
         Some((run.loss_words(c.name()), own.saved.percent?, own.range))
     };
-    let mut losses: Vec<(String, f64, Option<[f64; 2]>)> = Component::ALL.into_iter().filter_map(priced).collect();
+    let mut losses: Vec<(String, f64, Option<[f64; 2]>)> =
+        Component::ALL.into_iter().filter_map(priced).collect();
     losses.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let rest: f64 = losses.iter().skip(NAMED).map(|(_, percent, _)| percent).sum();
+    let rest: f64 = losses
+        .iter()
+        .skip(NAMED)
+        .map(|(_, percent, _)| percent)
+        .sum();
     let count = losses.len().saturating_sub(NAMED);
     let named = losses.iter().take(NAMED);
     let mut parts: Vec<String> = named
         .map(|(name, x, range)| match range {
-            Some([low, high]) => format!("{name} {} ({} to {})", fixed(*x, 1), fixed(*low, 1), fixed(*high, 1)),
+            Some([low, high]) => format!(
+                "{name} {} ({} to {})",
+                fixed(*x, 1),
+                fixed(*low, 1),
+                fixed(*high, 1)
+            ),
             None => format!("{name} {}", fixed(*x, 1)),
         })
         .collect();

@@ -95,6 +95,19 @@ pub struct LeverBlock {
     pub reasons: Vec<(String, usize)>,
     /// Levers, then combinations, each from the largest saving on.
     pub rows: Vec<LeverRow>,
+    /// The foremost single levers against each other, the better one first.
+    pub between: Vec<Between>,
+}
+
+/// Two levers against each other, draw by draw.
+#[derive(Clone, Debug, Serialize)]
+pub struct Between {
+    /// Names for people of the first and the second lever.
+    pub titles: [String; 2],
+    /// Quantiles 0.05, 0.5 and 0.95 of the fuel of the first less that of the second, per cent of the second.
+    pub percent: [f64; 3],
+    /// In how many draws the first uses less.
+    pub better: Share,
 }
 
 /// One lever of a car.
@@ -307,6 +320,7 @@ fn blocks(
                     n: failed.len(),
                     reasons: numbers.reasons(k, &failed),
                     rows: Vec::new(),
+                    between: Vec::new(),
                 });
             }
             continue;
@@ -314,7 +328,9 @@ fn blocks(
         let is_lever = ["lever", "combination"].contains(&column.kind.as_str());
         if let Some(block) = blocks.last_mut().filter(|_| is_lever) {
             let set_by = |percent: &[f64]| set_by(outline, percent, confidence);
-            block.rows.push(row(k, column, numbers, (confidence, &set_by)));
+            block
+                .rows
+                .push(row(k, column, numbers, (confidence, &set_by)));
         }
     }
     for block in &mut blocks {
@@ -333,15 +349,61 @@ fn blocks(
             let ((a_last, a), (b_last, b)) = (key(a), key(b));
             a_last.cmp(&b_last).then(a.total_cmp(&b))
         });
+        block.between = between(columns, block, numbers, confidence);
     }
     blocks
+}
+
+/// Number of levers that are compared with each other.
+const FOREMOST: usize = 3;
+
+/// The foremost single levers of a car against each other.
+fn between(
+    columns: &[ColumnNote],
+    block: &LeverBlock,
+    numbers: &Numbers,
+    confidence: Confidence,
+) -> Vec<Between> {
+    let column = |row: &LeverRow| {
+        let own = |note: &ColumnNote| {
+            note.kind == row.of.kind
+                && note.name == row.of.name
+                && note.vehicle == block.vehicle
+                && note.ambient_degc.total_cmp(&block.ambient_degc).is_eq()
+        };
+        columns.iter().position(own)
+    };
+    let single = block.rows.iter().filter(|row| !row.is_combination());
+    let works = single.filter(|row| !row.does_not_work() && row.fuel_percent.value < 0.0);
+    let foremost: Vec<(&LeverRow, usize)> = works
+        .take(FOREMOST)
+        .filter_map(|row| Some((row, column(row)?)))
+        .collect();
+    let mut list = Vec::new();
+    for (k, (first, own)) in foremost.iter().enumerate() {
+        for (second, other) in &foremost[k + 1..] {
+            let pairs = numbers.fuel[*own].iter().zip(&numbers.fuel[*other]);
+            let percent: Vec<f64> = pairs.map(|(a, b)| 100.0 * (a / b - 1.0)).collect();
+            let quantiles = sorted(percent.iter().copied());
+            list.push(Between {
+                titles: [first.of.title.clone(), second.of.title.clone()],
+                percent: [0.05, 0.5, 0.95].map(|p| quantile_of_sorted(&quantiles, p)),
+                better: Share::new(&percent, Some(confidence), |x| x < 0.0),
+            });
+        }
+    }
+    list
 }
 
 /// The value that sets the size of a change.
 fn set_by(outline: &StudyManifest, percent: &[f64], confidence: Confidence) -> Option<SetBy> {
     let of = Information::of_sample(&outline.plan, percent, confidence)?;
     let first = of.causes().next()?;
-    let factor = outline.plan.factors.iter().find(|factor| factor.name == first.name)?;
+    let factor = outline
+        .plan
+        .factors
+        .iter()
+        .find(|factor| factor.name == first.name)?;
     Some(SetBy {
         factor: first.name.clone(),
         key: factor.key.clone(),

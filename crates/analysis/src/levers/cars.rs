@@ -51,6 +51,11 @@ pub(super) fn cars(
         for (k, found) in found.into_iter().enumerate() {
             match found {
                 Ok(()) => levers.push(k),
+                // A lever that the user has named gets its row, of no change.
+                Err(Useless::NothingChanges) if request.levers[k].is_named => {
+                    levers.push(k);
+                    useless[k].push((name.clone(), Useless::NothingChanges));
+                }
                 Err(why) => useless[k].push((name.clone(), why)),
             }
         }
@@ -121,13 +126,7 @@ fn refused(lever: &Lever, why: Useless) -> Problems {
                 .hint(format!("name a vehicle without a {other}, or other levers"))
                 .into()
         }
-        Useless::NothingChanges => Problem::conflict(format!(
-            "lever {name} changes nothing: every value is that of the car"
-        ))
-        .at(lever.set_place.clone())
-        .key("lever.set")
-        .hint("give another value, or remove the lever")
-        .into(),
+        Useless::NothingChanges => Problems::new(),
         Useless::Bad(problems) => problems.map(|problem| in_lever(lever, problem)),
     }
 }
@@ -150,7 +149,9 @@ fn noted(lever: &Lever, car: &str, why: &Useless) -> String {
             let [own, _] = boxes(lever);
             format!("{car}: without {name}, which is for cars with a {own}")
         }
-        Useless::NothingChanges => format!("{car}: without {name}, which changes nothing in it"),
+        Useless::NothingChanges => {
+            format!("{car}: {name} changes nothing in it, the car has these values")
+        }
         Useless::Bad(problems) => {
             let first = problems
                 .first()

@@ -9,9 +9,9 @@ use super::cars::{LeverCar, cars};
 use super::combine::{Combination, Nominal, check, combinations};
 use super::request::{ColumnNote, LeverNotes, LeverRequest, OtherCar, OtherKind};
 use super::{Lever, options};
+use cvtcycle_config::setup::{Options, load};
 use cvtcycle_config::{Acts, Override, Problem, Problems};
 use cvtcycle_study::execute::outputs::FUEL;
-use cvtcycle_config::setup::{Options, load};
 use cvtcycle_study::execute::{Column, Columns, Study, idle, relative, with_ranges};
 use cvtcycle_study::plan::{Base, Cars, Design, Factor, Plan, RUN_OPTIONS};
 
@@ -164,13 +164,20 @@ fn with_ranges_of<'r>(
     plan: Plan,
     of_cvt: bool,
     cars: &[LeverCar],
-    (request, others): (&'r LeverRequest, impl Iterator<Item = (&'r String, &'r Options)>),
+    (request, others): (
+        &'r LeverRequest,
+        impl Iterator<Item = (&'r String, &'r Options)>,
+    ),
 ) -> Result<Plan, Problems> {
     let plain = options(&request.base, std::iter::empty());
     let own = cars.iter().map(|car| load(&car.word, &plain));
     let others = others.map(|(word, options)| load(word, options));
     let setups = own.chain(others).collect::<Result<Vec<_>, _>>()?;
-    Ok(with_ranges(plan, of_cvt, &setups.iter().collect::<Vec<_>>()))
+    Ok(with_ranges(
+        plan,
+        of_cvt,
+        &setups.iter().collect::<Vec<_>>(),
+    ))
 }
 
 /// True for a factor whose value the user has given all of its cars: it is certain.

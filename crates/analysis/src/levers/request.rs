@@ -60,6 +60,8 @@ pub enum OtherKind {
     Unchanged,
     /// The car without one of its losses.
     WithoutLoss,
+    /// The subject of another run.
+    OtherRun,
 }
 
 impl OtherKind {
@@ -69,6 +71,7 @@ impl OtherKind {
             OtherKind::Baseline => "baseline",
             OtherKind::Unchanged => "unchanged",
             OtherKind::WithoutLoss => "without_loss",
+            OtherKind::OtherRun => "other_run",
         }
     }
 }

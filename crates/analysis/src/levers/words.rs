@@ -1,7 +1,7 @@
 //! The answer of a lever study in sentences.
 
-use super::{LeverAnswer, LeverBlock, LeverRow};
-use crate::words::of_cars;
+use super::{Between, LeverAnswer, LeverBlock, LeverRow};
+use crate::words::{between, decimals, of_cars};
 use cvtcycle_output::number::{fixed, signed};
 
 /// Describes the savings of a car's levers: the first lines of the answer.
@@ -62,6 +62,9 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
             "In {failed} of {n} runs the car as it is fails by {why}; they are left out."
         ));
     }
+    if answer.plan.is_some() {
+        sentences.extend(block.between.iter().map(against_each_other));
+    }
     for row in block.rows.iter().filter(|row| row.is_combination()) {
         let (list, change) = (row.of.members.join(" + "), change(answer, row));
         let sum = signed(row.sum_percent, 2);
@@ -70,6 +73,22 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         ));
     }
     sentences
+}
+
+/// Two levers against each other in a sentence.
+fn against_each_other(of: &Between) -> String {
+    let [first, second] = &of.titles;
+    let ends = [of.percent[0], of.percent[2]];
+    let (k, n) = (of.better.k, of.better.n);
+    let verdict = match (ends[1] < 0.0, ends[0] > 0.0) {
+        (true, _) | (_, true) => "",
+        _ => ": which of them saves more is open",
+    };
+    format!(
+        "{first} against {second}: {} fuel ({}), less in {k} of {n}{verdict}.",
+        signed(of.percent[1], decimals(ends)) + " %",
+        between(ends, "%")
+    )
 }
 
 /// Names of the failed checks.

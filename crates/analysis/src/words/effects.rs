@@ -182,10 +182,14 @@ fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
         ));
     };
     if let Some([low, high]) = first.share.interval.filter(|[low, high]| high - low > WIDE) {
-        let [low, high] = [low, high].map(|x| fixed(100.0 * x, 0));
         let (n, name) = (of.n, &first.name);
+        // The width of an interval falls with the root of the samples.
+        let needed = n as f64 * ((high - low) / WIDE).powi(2);
+        let round = 10f64.powf(needed.log10().floor());
+        let needed = plain((needed / round).ceil() * round);
+        let [low, high] = [low, high].map(|x| fixed(100.0 * x.clamp(0.0, 1.0), 0));
         return Some(format!(
-            "{n} samples are too few to say what knowing {name} would leave: its share of the variance is {low} to {high} %."
+            "{n} samples are too few to say what knowing {name} would leave: its share of the variance is {low} to {high} %; about {needed} would tell."
         ));
     }
     let digits = decimals([0.0, of.sd]) + 1;
@@ -310,7 +314,7 @@ mod tests {
         );
         assert_eq!(
             wide,
-            "256 samples are too few to say what knowing a would leave: its share of the variance is 30 to 150 %."
+            "256 samples are too few to say what knowing a would leave: its share of the variance is 30 to 100 %; about 2000 would tell."
         );
     }
 

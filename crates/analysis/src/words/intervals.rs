@@ -104,8 +104,11 @@ pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, P
     cycle.clone_into(&mut base.cycle);
     base.ambient_degc = ambient_degc;
     start.clone_into(&mut base.start);
-    let cars = [&base.vehicle, &base.baselines.clone().unwrap_or_default()[0]]
-        .map(|word| Ok(car_sha256(&load(word, &Options::default())?)));
+    let cars = [
+        &base.vehicle,
+        &base.baselines.clone().unwrap_or_default()[0],
+    ]
+    .map(|word| Ok(car_sha256(&load(word, &Options::default())?)));
     let [subject, baseline]: [Result<String, Problems>; 2] = cars;
     let (subject, baseline) = (subject?, baseline?);
     let study = prepare(&Question::differences(base, DRAWS))?;

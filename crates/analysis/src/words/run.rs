@@ -11,8 +11,8 @@ use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range,
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
-    Comparison, Contradiction, DrawnDifference, Driven, MapLeft, Over, RecordingSummary, RunSummary, StartWord,
-    Summary, UNCHANGED,
+    Comparison, Contradiction, DrawnDifference, Driven, MapLeft, Over, RecordingSummary,
+    RunSummary, StartWord, Summary, UNCHANGED,
 };
 
 use super::intervals as drawn;
@@ -137,7 +137,8 @@ fn is_shipped(name: &str, setup: &Setup) -> bool {
     load(name, &Options::default()).is_ok_and(|own| car_sha256(&own) == car_sha256(setup))
 }
 
-fn contradicted(
+/// The published numbers, of `known` or else of all that are about the cars, that a run contradicts; `start` as the rows have it.
+pub fn contradicted(
     summary: &Summary,
     start: &str,
     driven: &[Driven],
@@ -248,7 +249,10 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let faults = run.faults();
     let failed = match faults.is_empty() {
         true => String::new(),
-        false => format!("FAILED, {}; not the numbers of a car that drives this cycle. ", faults.join(", ")),
+        false => format!(
+            "FAILED, {}; not the numbers of a car that drives this cycle. ",
+            faults.join(", ")
+        ),
     };
     let first = format!(
         "{failed}{doubt}{}: {} {}{mass}{resolution}{range}{against}.",
@@ -448,7 +452,10 @@ fn against(
         true => baseline.to_owned(),
         false => format!("{baseline}, which failed ({})", faults.join(", ")),
     };
-    let Some((drawn, ends)) = comparison.interval.as_ref().and_then(|of| Some((of, of.ends()?)))
+    let Some((drawn, ends)) = comparison
+        .interval
+        .as_ref()
+        .and_then(|of| Some((of, of.ends()?)))
     else {
         let compared = more_or_less(percent, if is_change { 2 } else { 1 });
         let than = than(&compared);
@@ -459,11 +466,14 @@ fn against(
             };
             format!(" ({range})")
         });
-        let failing = comparison.interval.as_ref().and_then(DrawnDifference::failures_in_words);
+        let failing = comparison
+            .interval
+            .as_ref()
+            .and_then(DrawnDifference::failures_in_words);
         let failing = failing.map(|words| format!(" (no range: {words})"));
-        let range = range.or(failing).unwrap_or_else(|| {
-            " (how sure this is, no measured cars tell)".to_owned()
-        });
+        let range = range
+            .or(failing)
+            .unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());
         return Some(format!(", {compared} {than} {baseline}{range}"));
     };
     let compared = more_or_less(percent, decimals(ends));

@@ -169,7 +169,10 @@ impl<'r> Section<'r> {
         match (ends, value) {
             (Some([low, high]), Some(x)) if low < high && (low..=high).contains(&x) => ends,
             _ => {
-                let message = format!("`{}` has no range that holds its value", join(&self.path, key));
+                let message = format!(
+                    "`{}` has no range that holds its value",
+                    join(&self.path, key)
+                );
                 let problem = Problem::out_of_range(message)
                     .names_key()
                     .allowed("two numbers with the value between them, low end first")

@@ -17,8 +17,15 @@ pub struct DrawnDifference {
     pub reasons: Vec<(String, u64)>,
     /// Pairs in which the subject uses more.
     pub more: u64,
-    /// Quantiles 0.05, 0.5 and 0.95 of the difference, per cent.
+    /// Quantiles 0.05, 0.5 and 0.95 of the difference, per cent; null (NaN) where all pairs fail.
+    #[serde(deserialize_with = "numbers")]
     pub percent: [f64; 3],
+}
+
+/// Numbers of which JSON has null for what is not finite.
+fn numbers<'de, D: serde::Deserializer<'de>>(of: D) -> Result<[f64; 3], D::Error> {
+    let read = <[Option<f64>; 3]>::deserialize(of)?;
+    Ok(read.map(|x| x.unwrap_or(f64::NAN)))
 }
 
 /// Share of the draws that may fail without being named a risk, and above which the others claim no range: they are of a car that
@@ -40,7 +47,8 @@ impl DrawnDifference {
     #[must_use]
     pub fn ends(&self) -> Option<[f64; 2]> {
         let ends = [self.percent[0], self.percent[2]];
-        let is_known = self.failed_share() <= FAILED_SHARES[1] && ends.iter().all(|x| x.is_finite());
+        let is_known =
+            self.failed_share() <= FAILED_SHARES[1] && ends.iter().all(|x| x.is_finite());
         is_known.then_some(ends)
     }
 
@@ -49,7 +57,10 @@ impl DrawnDifference {
     pub fn failures_in_words(&self) -> Option<String> {
         (self.failed_share() > FAILED_SHARES[0]).then(|| {
             let (failed, all) = (self.left_out, self.draws + self.left_out);
-            let reasons = self.reasons.iter().map(|(name, n)| format!("{name} in {n}"));
+            let reasons = self
+                .reasons
+                .iter()
+                .map(|(name, n)| format!("{name} in {n}"));
             let reasons = reasons.collect::<Vec<_>>().join(", ");
             format!("{failed} of {all} runs with uncertain values varied fail: {reasons}")
         })

@@ -78,6 +78,16 @@ class Car:
         engine_oil: str | None = None,
         formulation: str = "smooth",
     ) -> Car: ...
+    def answer(
+        self,
+        cycle: str,
+        ambient_degc: float,
+        start: str | float | dict[str, float],
+        baselines: list[str] | None,
+        draws: int,
+        levers: bool,
+        dt_s: float,
+    ) -> str: ...
     def accelerate(
         self,
         speeds_kmh: tuple[float, float] | None,

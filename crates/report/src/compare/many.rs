@@ -7,13 +7,16 @@ use serde::Serialize;
 
 use crate::problems::problem;
 use crate::results::{ResultDir, RunResults, find};
+use crate::whatif::base_of_run;
+use cvtcycle_analysis::answer;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, Problems, Setting};
 use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::record::Manifest;
-use cvtcycle_output::summary::{Over, RunSummary, StartWord, Summary};
+use cvtcycle_output::summary::{DrawnDifference, Over, RunSummary, StartWord, Summary};
 use cvtcycle_output::{Component, summary::SCHEMA};
+use cvtcycle_study::plan::Base;
 
 /// Losses are omitted if their difference is below this share of the largest one.
 const MIN_SHARE: f64 = 0.01;
@@ -72,8 +75,13 @@ pub struct Side {
     pub min_clamp_safety: Option<f64>,
     /// Time in which the car could not follow the trace.
     pub trace_missed_s: f64,
+    /// Difference of the fuel over the same draws of what is uncertain, of a car whose values differ from those of the reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawn: Option<DrawnDifference>,
     /// Names of the failed checks.
     pub failed_checks: Vec<String>,
+    /// Failed checks and gross slip with their times: the numbers are none of a car that drives the cycle.
+    pub faults: Vec<String>,
 }
 
 impl Side {
@@ -169,7 +177,31 @@ pub fn compare(
     if let Some(first) = conditions.first().filter(|_| !loosely) {
         return Err(apart(first, &named).into());
     }
-    Ok(compare_runs(&named, conditions))
+    let mut compared = compare_runs(&named, conditions);
+    if compared.conditions.is_empty() {
+        draw(&named, &mut compared);
+    }
+    Ok(compared)
+}
+
+/// Draws of a comparison: as many as give the ends of a difference a range of their own (ES-3).
+const DRAWS: u64 = 72;
+
+/// Adds the draws of what is uncertain, the same for all runs; none where a car or the cycle has changed since its run.
+fn draw(named: &[(String, RunResults)], compared: &mut RunComparison) {
+    let base = |(_, run): &(String, RunResults)| {
+        base_of_run(&run.path, &run.summary, run.record.as_ref()?).ok()
+    };
+    let bases: Option<Vec<Base>> = named.iter().map(base).collect();
+    let Some([first, others @ ..]) = bases.as_deref() else {
+        return;
+    };
+    let Ok(drawn) = answer::compare(first, others, DRAWS) else {
+        return;
+    };
+    for (side, drawn) in compared.runs.iter_mut().skip(1).zip(drawn) {
+        side.drawn = Some(drawn);
+    }
 }
 
 /// Names of the directories, numbered where they are equal.
@@ -324,7 +356,9 @@ fn side(name: &str, summary: &Summary, base: &RunSummary) -> Side {
         transmission_loss_kj_per_h: each_hour(run.transmission_loss_kj()),
         min_clamp_safety: run.min_clamp_safety,
         trace_missed_s: run.trace_missed_s,
+        drawn: None,
         failed_checks: run.failed_checks.clone(),
+        faults: run.faults(),
     }
 }
 

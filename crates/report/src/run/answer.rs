@@ -44,7 +44,11 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     let failing = found.answer.as_ref().and_then(Answer::failures_in_words);
     for line in checks(summary)
         .into_iter()
-        .chain(failing.iter().map(|words| format!("{words}. The ranges are those of the others.")))
+        .chain(
+            failing
+                .iter()
+                .map(|words| format!("{words}. The ranges are those of the others.")),
+        )
         .chain(found.missing.iter().map(|line| capital_first(line) + "."))
     {
         section.alert(line);
@@ -59,12 +63,22 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     }
     match options {
         Some((answer, block)) => {
-            let caption = format!("Options: what the most effective changes of the design (levers) do to the fuel of {}.", block.vehicle);
-            section.figure("options", caption, foremost_levers(answer, block, OPTIONS.0));
+            let caption = format!(
+                "Options: what the most effective changes of the design (levers) do to the fuel of {}.",
+                block.vehicle
+            );
+            section.figure(
+                "options",
+                caption,
+                foremost_levers(answer, block, OPTIONS.0),
+            );
         }
         None => section.text("Options: not computed for this case."),
     }
-    let own = found.studies.iter().find_map(|study| next_test(study, summary));
+    let own = found
+        .studies
+        .iter()
+        .find_map(|study| next_test(study, summary));
     let computed = || test_of(found.answer.as_ref()?.information.as_ref()?, summary);
     let next = own.or_else(computed);
     let no_test = no_test(found.answer.as_ref());
@@ -137,7 +151,9 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         let [low, _, high] = subject.drawn?;
         let digits = decimals([low, high]);
         let [low, high] = [low, high].map(|x| grouped(x, digits));
-        Some(format!(" ({low} to {high} in 90 % of the runs with uncertain values varied)"))
+        Some(format!(
+            " ({low} to {high} in 90 % of the runs with uncertain values varied)"
+        ))
     };
     let range = subject.fleet.as_ref().map(of_cars).or_else(drawn);
     let range = range.unwrap_or_default();
@@ -317,9 +333,8 @@ fn risk(row: &LeverRow) -> Option<String> {
     });
     let safety = row.effect("min_clamp_safety");
     // Draw by draw: the worst draw of the change against the worst one of the car as it is, not against its nominal value.
-    let falls = safety.filter(|own| {
-        own.change < -SAFETY || own.worst < own.reference_worst - SAFETY
-    });
+    let falls =
+        safety.filter(|own| own.change < -SAFETY || own.worst < own.reference_worst - SAFETY);
     let falls = falls.map(|own| {
         let ratio = |x: f64| Quantity::Ratio.text(Some(x));
         format!(

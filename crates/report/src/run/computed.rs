@@ -1,8 +1,6 @@
 //! Answer of a run from one sample of what is uncertain of its cars: ranges, price of each loss, options, next test.
 
-use cvtcycle_analysis::answer::{Answer, DRAWS, Question, prepare};
-use cvtcycle_analysis::levers::{Lever, LeverFile};
-use cvtcycle_config::setup::Kind;
+use cvtcycle_analysis::answer::{Answer, DRAWS, HEARD_RPM, Question, prepare, shipped_levers};
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::summary::{Comparison, DrawnDifference, Over, Summary};
 use cvtcycle_study::Study;
@@ -10,16 +8,17 @@ use cvtcycle_study::Study;
 use crate::results::RunResults;
 use crate::whatif::base_of_run;
 
-/// Engine speed below which a loaded engine behind a closed clutch is heard and felt, rpm; as `cvtcycle levers` has it.
-const HEARD_RPM: f64 = 1300.0;
-
 /// The study of a run's question.
 ///
 /// # Errors
 /// Why there is none, in words: a car or the cycle has changed since the run, or there is no distance to compare.
 pub(crate) fn study_of_run(found: &RunResults) -> Result<Study, String> {
     let summary = &found.summary;
-    if summary.runs.first().is_none_or(|run| run.over() == Over::Time) {
+    if summary
+        .runs
+        .first()
+        .is_none_or(|run| run.over() == Over::Time)
+    {
         return Err("the cycle has no distance".to_owned());
     }
     let Some(record) = &found.record else {
@@ -42,20 +41,13 @@ fn first_message(problems: &Problems) -> String {
     first.map_or_else(String::new, |problem: &Problem| problem.message.clone())
 }
 
-fn shipped_levers() -> Result<Vec<Lever>, Problems> {
-    let mut all = Vec::new();
-    for name in Kind::Levers.names() {
-        all.extend(LeverFile::open(name)?.levers);
-    }
-    Ok(all)
-}
-
 /// Puts the ranges of an answer in place of those of other samples: a document has one. The difference to a baseline keeps the range of measured
 /// cars where there is one: it holds the error of the model, which no draw has.
 pub(crate) fn merge(summary: &mut Summary, answer: &Answer) {
     if summary.comparison.len() == answer.differences.len() {
         let drawn = answer.differences.iter().map(|(_, drawn)| drawn.clone());
-        let without_cars = |(comparison, _): &(&mut Comparison, DrawnDifference)| comparison.fleet.is_none();
+        let without_cars =
+            |(comparison, _): &(&mut Comparison, DrawnDifference)| comparison.fleet.is_none();
         let pairs = summary.comparison.iter_mut().zip(drawn);
         for (comparison, drawn) in pairs.filter(without_cars) {
             comparison.interval = Some(drawn);

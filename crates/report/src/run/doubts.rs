@@ -191,7 +191,7 @@ fn by_cars(summary: &Summary) -> Option<String> {
     let known: Vec<String> = known.collect();
     (!known.is_empty()).then(|| {
         format!(
-            "There is no study of uncertainty of this case: the interval of the difference is that of computed against measured cars, {}.",
+            "The range of the difference is that of computed against measured cars, which holds the error of the model: {}.",
             known.join("; ")
         )
     })
@@ -223,7 +223,7 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
             && study.answer.points_done > 0
             && study_answers::other_case(study, &found.summary).is_none()
     };
-    let none = "There is no study of uncertainty of this case: the difference has no interval.";
+    let none = "The uncertain values of this case were not varied: the difference has no range.";
     let known = intervals(&found.summary.labelled());
     let is_known = !known.is_empty();
     list.extend(known);

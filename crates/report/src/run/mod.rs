@@ -109,6 +109,7 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     sections.extend(found.validation.as_ref().map(validation::section));
     sections.push(reproduce::section(found, &cars));
     document.sections = sections;
+    document.answer = found.answer.clone().map(Box::new);
     Ok(document)
 }
 

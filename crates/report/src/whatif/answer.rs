@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use cvtcycle_analysis::answer::{Draws, Question, prepare};
-use cvtcycle_analysis::words::run::{assess_fleet, maps_left, sentences};
+use cvtcycle_analysis::words::run::{
+    assess_fleet, contradicted, contradictions, maps_left, sentences,
+};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, is_twin, load, name_of};
 use cvtcycle_config::{Override, Problem, Problems, carried};
@@ -12,7 +14,8 @@ use cvtcycle_model::drive::{Conditions, Outcome, drive};
 use cvtcycle_output::History;
 use cvtcycle_output::history::known;
 use cvtcycle_output::summary::{
-    DrawnDifference, Driven, Settings, Summary, find_maps_left, summarise,
+    Contradiction, DrawnDifference, Driven, Settings, StartWord, Summary, UNCHANGED,
+    find_maps_left, summarise,
 };
 use cvtcycle_study::plan::Base;
 
@@ -46,6 +49,41 @@ pub struct LivePage {
 struct DrivenCar {
     setup: Setup,
     outcome: Outcome,
+}
+
+/// The cars of a state, driven.
+struct Drives {
+    wanted: Vec<CarRequest>,
+    cars: Vec<Arc<DrivenCar>>,
+    names: Vec<String>,
+    cycle: Cycle,
+    conditions: Conditions,
+    start: StartWord,
+    settings: Settings,
+}
+
+impl Drives {
+    fn driven(&self) -> Vec<Driven<'_>> {
+        let cars = self.cars.iter().zip(&self.names);
+        let driven = cars.map(|(car, name)| Driven {
+            name,
+            setup: &car.setup,
+            outcome: &car.outcome,
+        });
+        driven.collect()
+    }
+
+    fn summary(&self, state: &State, driven: &[Driven]) -> Summary {
+        let (start, settings) = (self.start.clone(), self.settings.clone());
+        let mut found = summarise(&self.cycle, state.ambient_degc, start, settings, driven);
+        for (run, car) in found.runs.iter_mut().zip(&self.wanted) {
+            if car.of_file {
+                UNCHANGED.clone_into(&mut run.role);
+            }
+        }
+        find_maps_left(&mut found, &self.cycle, &self.conditions, driven);
+        found
+    }
 }
 
 /// A car to drive: its word, its options, and the word by which a command names it.
@@ -132,12 +170,64 @@ impl LivePage {
         };
         let found = draws.advance()?;
         let found = found.map(|answer| -> Vec<DrawnDifference> {
-            answer.differences.into_iter().map(|(_, drawn)| drawn).collect()
+            answer
+                .differences
+                .into_iter()
+                .map(|(_, drawn)| drawn)
+                .collect()
         });
         if found.is_none() {
             self.draws = Some((state.clone(), draws));
         }
         Ok(found)
+    }
+
+    /// Published numbers that the initial state contradicts.
+    ///
+    /// # Errors
+    /// Problems of the cars and of the cycle.
+    pub fn contradicted(&mut self) -> Result<Vec<Contradiction>, Problems> {
+        let state = self.scene.state.clone();
+        let moved = self.moved(&state)?;
+        let drives = self.drives(&state, &moved)?;
+        let driven = drives.driven();
+        let StartWord::Word(start) = &drives.start else {
+            return Ok(Vec::new());
+        };
+        let summary = drives.summary(&state, &driven);
+        Ok(contradicted(&summary, start, &driven, None))
+    }
+
+    /// Drives the cars of a state.
+    fn drives(&mut self, state: &State, moved: &[Override]) -> Result<Drives, Problems> {
+        let wanted = self.wanted(state, moved)?;
+        let (start, word) = self.scene.start()?;
+        let conditions = Conditions {
+            ambient_k: state.ambient_k()?,
+            start,
+            max_dt_s: self.scene.dt_s,
+            keep_rows: true,
+        };
+        let own = load(&wanted[0].word, &wanted[0].options)?;
+        let cycle = cycle::for_car(&state.cycle, self.cycle(&state.cycle)?, &own);
+        let mut own = Some(own);
+        let mut cars = Vec::new();
+        for car in &wanted {
+            cars.push(self.car(car, own.take(), &cycle, &conditions)?);
+        }
+        Ok(Drives {
+            names: names(&wanted),
+            settings: Settings {
+                dt_s: self.scene.dt_s,
+                formulation: self.scene.formulation.clone(),
+                ..Settings::default()
+            },
+            wanted,
+            cars,
+            cycle,
+            conditions,
+            start: word,
+        })
     }
 
     fn study(&self, state: &State) -> Result<cvtcycle_study::Study, Problems> {
@@ -276,42 +366,20 @@ impl LivePage {
         drawn: Option<Vec<DrawnDifference>>,
     ) -> Result<Answer, Problems> {
         let moved = self.moved(state)?;
-        let wanted = self.wanted(state, &moved)?;
-        let (start, start_word) = self.scene.start()?;
-        let conditions = Conditions {
-            ambient_k: state.ambient_k()?,
-            start,
-            max_dt_s: self.scene.dt_s,
-            keep_rows: true,
-        };
-        let own = load(&wanted[0].word, &wanted[0].options)?;
-        let cycle = cycle::for_car(&state.cycle, self.cycle(&state.cycle)?, &own);
-        let mut own = Some(own);
-        let mut cars = Vec::new();
-        for car in &wanted {
-            cars.push(self.car(car, own.take(), &cycle, &conditions)?);
-        }
-        let names = names(&wanted);
-        let driven = cars.iter().zip(&names).map(|(car, name)| Driven {
-            name,
-            setup: &car.setup,
-            outcome: &car.outcome,
-        });
-        let driven: Vec<Driven> = driven.collect();
-        let settings = Settings {
-            dt_s: self.scene.dt_s,
-            formulation: self.scene.formulation.clone(),
-            ..Settings::default()
-        };
-        let mut found = summarise(&cycle, state.ambient_degc, start_word, settings, &driven);
-        find_maps_left(&mut found, &cycle, &conditions, &driven);
+        let drives = self.drives(state, &moved)?;
+        let driven = drives.driven();
+        let mut found = drives.summary(state, &driven);
+        let Drives { wanted, cycle, .. } = &drives;
         for (comparison, drawn) in found.comparison.iter_mut().zip(drawn.into_iter().flatten()) {
             comparison.interval = Some(drawn);
         }
+        if *state == self.scene.state {
+            found.contradicted.clone_from(&self.scene.contradicted);
+        }
         assess_fleet(&mut found);
-        let histories = driven.iter().map(|car| history(car, &cycle));
+        let histories = driven.iter().map(|car| history(car, cycle));
         let histories: Vec<History> = histories.collect();
-        let section = self.section(state, &found, &histories, &cycle, &wanted);
+        let section = self.section(state, &found, &histories, cycle, wanted);
         let [_, own] = self.scene.overrides()?;
         let set = own.iter().chain(&moved).map(Override::to_string);
         let named = wanted.iter().skip(1).map(|car| car.named.clone());
@@ -349,7 +417,8 @@ impl LivePage {
         let alerts = words::flags(subject, of_file.clone().next())
             .into_iter()
             .chain(words::beyond(&self.controls, state))
-            .chain(maps_left(&labelled));
+            .chain(maps_left(&labelled))
+            .chain(contradictions(&labelled));
         alerts.for_each(|line| section.alert(line));
         words::needs(&self.controls, state)
             .into_iter()

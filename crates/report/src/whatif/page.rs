@@ -23,10 +23,16 @@ impl LiveSection {
     /// # Errors
     /// Problems of the cars and of the cycle.
     pub fn new(scene: Scene) -> Result<Self, Problems> {
-        let (made, files) = cvtcycle_config::carried::reading(|| LiveSection::answered(&scene));
-        let mut section = made?;
+        let made = || {
+            let mut scene = scene.clone();
+            scene.contradicted = LivePage::new(scene.clone())?.contradicted()?;
+            Ok::<_, Problems>((LiveSection::answered(&scene)?, scene.contradicted))
+        };
+        let (made, files) = cvtcycle_config::carried::reading(made);
+        let (mut section, contradicted) = made?;
         let scene = Scene {
             drawn: section.drawn.take(),
+            contradicted,
             ..scene.with_files(files)
         };
         let json = serde_json::to_string(&scene).unwrap_or_default();

@@ -9,7 +9,7 @@ use cvtcycle_config::{Argument, Override, Problem, Problems, carried};
 use cvtcycle_model::drive::Start;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-use cvtcycle_output::summary::{DrawnDifference, StartWord};
+use cvtcycle_output::summary::{Contradiction, DrawnDifference, StartWord};
 use serde::{Deserialize, Serialize};
 
 use crate::live_section::State;
@@ -43,6 +43,9 @@ pub struct Scene {
     /// Differences of the initial state over its draws.
     #[serde(default)]
     pub drawn: Option<Vec<DrawnDifference>>,
+    /// Published numbers that the initial state contradicts: the page has no table of them.
+    #[serde(default)]
+    pub contradicted: Vec<Contradiction>,
     /// User's files by path, in Base64.
     pub files: BTreeMap<String, String>,
 }

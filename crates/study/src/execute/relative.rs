@@ -88,7 +88,9 @@ pub fn with_ranges(plan: Plan, of_cvts: bool, cars: &[&Setup]) -> Plan {
             if known.contains(&id) {
                 continue;
             }
-            let place = factors.iter().position(|factor| (&factor.key, factor.cars) == (&id.0, cars));
+            let place = factors
+                .iter()
+                .position(|factor| (&factor.key, factor.cars) == (&id.0, cars));
             let of_plan = place.map(|at| &factors[at]);
             let absolute = Factor {
                 key: info.key.clone(),
@@ -118,7 +120,12 @@ pub fn with_ranges(plan: Plan, of_cvts: bool, cars: &[&Setup]) -> Plan {
 }
 
 /// Tables of a car that are of its box: the same key of another box is another value.
-const OF_A_BOX: [&str; 4] = ["transmission.", "lubricant.", "thermal.transmission.", "thermal.cooler."];
+const OF_A_BOX: [&str; 4] = [
+    "transmission.",
+    "lubricant.",
+    "thermal.transmission.",
+    "thermal.cooler.",
+];
 
 /// Standard deviations at which the range of a table's friction is cut off.
 const CUT: f64 = 3.0;

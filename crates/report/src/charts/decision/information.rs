@@ -81,7 +81,7 @@ pub fn information(data: &Information, unit: &'static str, subject: &str) -> Pic
         );
         let ends = [0, 1].map(|k| optional_cell(left.interval.map(|data| data[k]), 0.01));
         let [from, to] = ends;
-        let share = cell(100.0 * factor.share.value, 1.0);
+        let share = cell(100.0 * factor.share.value.clamp(0.0, 1.0), 1.0);
         table.push([names[row].clone(), cell(left.value, 0.01), from, to, share]);
     }
     panel.upright(0.0, stroke(INK, 1.0, &[]));

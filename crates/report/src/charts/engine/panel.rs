@@ -205,7 +205,7 @@ pub(crate) fn rows_panel(
 /// Left edge of rows with names, pixels: room for the longest name, up to a limit.
 pub(crate) fn rows_left<'n>(names: impl Iterator<Item = &'n str>, size: f64) -> f64 {
     let widest = names.map(|name| text_width(name, size)).fold(0.0, f64::max);
-    (widest + 24.0).clamp(74.0, 340.0)
+    (widest + 24.0).clamp(74.0, 430.0)
 }
 
 /// Middle of a row on the vertical axis.
