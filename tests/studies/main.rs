@@ -20,6 +20,7 @@ mod titles;
 #[path = "../common/tree.rs"]
 mod tree;
 
+mod answer;
 mod attribute;
 mod calibrate;
 mod calibrate_cli;

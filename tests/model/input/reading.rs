@@ -54,6 +54,7 @@ fn both_forms_carry_their_status() {
         status: "fitted".into(),
         source: "run 4".into(),
         note: "cold".into(),
+        range: None,
         from: "line 2".into(),
         allowed: "0.5 to 10 mm".into(),
         is_number: true,
