@@ -1,4 +1,4 @@
-//! What a word means: keys with their values in the shipped files, columns, flags, equations, terms of the field.
+//! Meanings of words: keys with their values in the shipped files, columns, flags, equations, terms of the field.
 
 use std::sync::OnceLock;
 
@@ -57,7 +57,7 @@ pub fn key_json(info: &KeyInfo) -> Value {
 }
 
 impl Meanings {
-    /// What a word means: a key, table, column, flag, label or term; else whatever has all of its words in its meaning.
+    /// Finds a key, table, column, flag, label or term by its name; else every entry that has all of the words in its meaning.
     ///
     /// ```
     /// use cvtcycle::explain::Meanings;

@@ -111,7 +111,7 @@ const USUAL_BOX: &str = "box: box_cvt_clutch, with a wet launch clutch; most CVT
 /// Car and its file.
 pub struct NewPlan {
     car: NewCar,
-    /// What it was made of.
+    /// Answers from which the car is made.
     answers: Answers,
     /// True if the box is the default because none was named.
     has_usual_box: bool,

@@ -1,4 +1,4 @@
-//! What fuel a regression predicts from a few numbers of a car: a program has to do better.
+//! Fuel by a regression over a few numbers of a car: the least that the model has to beat.
 //!
 //! | label | statement | status |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! What the errors of a fleet say of a car that is not in it.
+//! Uncertainty of the fuel of a car outside the fleet, from the errors of the cars in it.
 //!
 //! | label | statement | status |
 //! |---|---|---|

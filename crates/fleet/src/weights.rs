@@ -1,4 +1,4 @@
-//! Which of the numbers that a car is made of matter most for its fuel.
+//! Sensitivity of the fuel to each number of a car, over its usual uncertainty.
 //!
 //! | label | statement | status |
 //! |---|---|---|

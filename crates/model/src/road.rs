@@ -129,7 +129,7 @@ impl<R: Real> RoadLoad<R> {
     /// Computes the demand of a step at the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
     pub fn wheel(&self, step: &Step, extra_n: R) -> WheelDemand<R> {
         let motion = &step.motion;
-        if motion.speed_m_s <= 0.0 {
+        if motion.rests() {
             let zero = extra_n.splat(0.0);
             return WheelDemand {
                 speed_m_s: 0.0,

@@ -52,7 +52,7 @@ fn rows() -> &'static [Row] {
     })
 }
 
-/// What was driven, as far as measured cars tell of it.
+/// Conditions of the drive by which measured cars are chosen for comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrivenOn<'a> {
     /// Name of the cycle.
@@ -154,14 +154,14 @@ pub fn figure_range(kind: &str, column: &str, fuel: f64) -> Option<FleetRange> {
 pub struct Compared<'a> {
     /// `cvt` or `manual`: the car, and the one that it is compared with.
     pub kinds: [&'a str; 2],
-    /// What the other car is to the car.
+    /// Relation of the other car to this one.
     pub other: Other,
 }
 
-/// What a car is to the car that is compared with it.
+/// Relation of a car to the one it is compared with: sets which spread applies to the difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Other {
-    /// Its twin by the rules of the program (TW-1 to TW-4), whose gear set and shift speeds are guesses as well.
+    /// The twin by the rules of the program (TW-1 to TW-4), whose gear set and shift speeds are guesses as well.
     Twin,
     /// A car of its own, with the same road load, tyres and engine.
     Alike,

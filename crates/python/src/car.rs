@@ -38,7 +38,7 @@ struct Source {
 #[pyclass(frozen)]
 pub struct Car {
     pub setup: Arc<Setup>,
-    /// Its values, for repeated changes.
+    /// Values of the car, kept so that changing them again reads no file.
     pub params: ParamSet,
     /// Name or path of its file, or the name of its text in problems.
     pub word: String,

@@ -5,6 +5,7 @@ use super::{one_line, run, run_in, stdout};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use std::process::Output;
 
 const CAR: &str = "civic_20_cvt";
 
@@ -38,34 +39,30 @@ fn truth() -> Vec<String> {
     set.collect()
 }
 
-/// The log that a car of the program writes of itself on a cycle.
-fn own_log(dir: &Path, cycle: &str, set: &[String]) {
-    let mut words = vec![
-        "run",
-        "--vehicle",
-        CAR,
-        "--baseline",
-        "none",
-        "--cycle",
-        cycle,
-    ];
-    words.extend([
-        "--price",
-        "never",
-        "--sensitivity",
-        "never",
-        "--quiet",
-        "--out",
-        cycle,
-    ]);
-    words.extend(set.iter().map(String::as_str));
-    let output = run_in(dir, &words);
+/// Runs a command that succeeds.
+fn done(dir: &Path, words: &[&str]) -> Output {
+    let output = run_in(dir, words);
     assert_eq!(
         output.status.code(),
         Some(0),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
+    output
+}
+
+/// Drives a car without others and without prices of its losses, with files in `out`.
+fn drive_alone(dir: &Path, car: &str, cycle: &str, out: &str, set: &[String]) {
+    let words = format!(
+        "run --vehicle {car} --baseline none --cycle {cycle} --price never --sensitivity never --quiet --out {out}"
+    );
+    let set = set.iter().map(String::as_str);
+    done(dir, &words.split(' ').chain(set).collect::<Vec<_>>());
+}
+
+/// The log that a car of the program writes of itself on a cycle.
+fn own_log(dir: &Path, cycle: &str, set: &[String]) {
+    drive_alone(dir, CAR, cycle, cycle, set);
     let trace = dir.join(cycle).join(format!("trace_{CAR}.csv"));
     fs::rename(trace, dir.join(format!("{cycle}.csv"))).unwrap();
 }
@@ -89,13 +86,7 @@ fn a_car_is_found_again_in_its_own_logs() {
         "--out",
         "found",
     ];
-    let output = run_in(dir.path(), &words);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let output = done(dir.path(), &words);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let value = |key: &str| {
         let all = found["values"].as_array().unwrap();
@@ -185,19 +176,7 @@ fn a_log_says_what_it_cannot_tell() {
         assert!(text.contains(part), "{part}: {text}");
     }
     let dir = tempfile::tempdir().unwrap();
-    let words = [
-        "run",
-        "--vehicle",
-        "civic_20_6mt",
-        "--baseline",
-        "none",
-        "--cycle",
-        "ftp75",
-        "--price",
-        "never",
-    ];
-    let more = ["--sensitivity", "never", "--quiet", "--out", "manual"];
-    run_in(dir.path(), &[&words[..], &more[..]].concat());
+    drive_alone(dir.path(), "civic_20_6mt", "ftp75", "manual", &[]);
     let log = dir.path().join("manual/trace_civic_20_6mt.csv");
     let text = one_line(&stdout(&run(&["calibrate", log.to_str().unwrap()])));
     assert!(
@@ -274,25 +253,7 @@ fn a_drive_starts_with_the_temperatures_of_its_log() {
 fn a_report_draws_the_log_next_to_the_computed_car() {
     let dir = tempfile::tempdir().unwrap();
     own_log(dir.path(), "udds", &[]);
-    let words = [
-        "run",
-        "--vehicle",
-        CAR,
-        "--baseline",
-        "none",
-        "--cycle",
-        "udds.csv",
-        "--price",
-        "never",
-    ];
-    let more = ["--sensitivity", "never", "--quiet", "--out", "again"];
-    let output = run_in(dir.path(), &[&words[..], &more[..]].concat());
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    drive_alone(dir.path(), CAR, "udds.csv", "again", &[]);
     assert!(dir.path().join(format!("again/log_{CAR}.svg")).exists());
     let summary = fs::read_to_string(dir.path().join("again/summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
@@ -303,13 +264,7 @@ fn a_report_draws_the_log_next_to_the_computed_car() {
         .unwrap();
     let series = fuel["series"].as_array().unwrap();
     assert!((200..=300).contains(&series.len()), "{}", series.len());
-    let output = run_in(dir.path(), &["report", "again", "--out", "page.html"]);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    done(dir.path(), &["report", "again", "--out", "page.html"]);
     let page = fs::read_to_string(dir.path().join("page.html")).unwrap();
     for part in ["The log next to the computed car", "Transmission sump"] {
         assert!(page.contains(part), "{part}");

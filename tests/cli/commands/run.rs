@@ -404,7 +404,21 @@ fn a_comparison_of_oils_notes_the_friction_it_changes() {
         // Contacts that are not measured with an oil are a note in any case.
         let notes = summary["runs"][0]["notes"].to_string();
         assert_eq!(notes.contains(note), says, "{oil}: {notes}");
+        let bands = "not measured with this fluid: bands";
+        assert_eq!(notes.contains(bands), says, "{oil}: {notes}");
     }
+    // Its own value is known in both commands, and has no source.
+    let shown = one_line(&stdout(&run_in(dir.path(), &["show", "own.toml"])));
+    assert!(
+        shown.contains("bands on shoulders and on each other: known: 0.12: user elements"),
+        "{shown}"
+    );
+    // The reference fluid borrows from no other.
+    let shown = one_line(&stdout(&run(&["show", "cvtf_ezl799_class"])));
+    assert!(
+        !shown.contains("as cvtf_ezl799_class") && shown.contains("0.09: assumed"),
+        "{shown}"
+    );
     let output = run(&["run", "--vehicle", "rover_216_cvt", "--cycle", "ece15"]);
     assert!(!stdout(&output).contains(note));
 }

@@ -41,6 +41,7 @@ mod shift_flow;
 mod parts_side_by_side;
 mod side_by_side;
 mod smaller_points;
+mod standstill;
 mod start_stop;
 mod tables;
 mod targets;

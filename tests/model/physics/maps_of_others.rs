@@ -287,7 +287,7 @@ fn a_map_is_the_same_in_every_form() {
     assert!(none.contains("measured_cylinders = 4"), "{none}");
 }
 
-/// What can be read in several ways is refused with what to type, and that reads.
+/// Property: an ambiguous table is refused with the option to type, and reads with it.
 #[test]
 fn a_matrix_without_a_meaning_says_what_to_type() {
     let blank = matrix("", &points(), 0, |x| x[2]);

@@ -55,7 +55,7 @@ fn sums(p: &PhaseTotals) -> Vec<(&'static str, f64)> {
     list
 }
 
-/// What a row adds to them: means times the step, and what the row has already for its step.
+/// Contribution of a row to the totals: means times the length of the step, and the sums that the row has.
 fn parts(row: &Row, terms: &EnergyTerms) -> Vec<f64> {
     let dt_s = row.dt_s;
     let fuel_kg = row.fuel_kg_s * dt_s;

@@ -172,7 +172,7 @@ fn law_bound(
 /// True where the coupling of a car that rolls is locked.
 fn locked(row: &Row) -> bool {
     let unlocked = Flags::CLUTCH_SLIPPING.0 | Flags::CLUTCH_OPEN.0 | Flags::LOCKUP_OPEN.0;
-    row.speed_m_s > 0.0 && !row.flags.any(Flags(unlocked | Flags::ENGINE_OFF.0))
+    !row.rests() && !row.flags.any(Flags(unlocked | Flags::ENGINE_OFF.0))
 }
 
 /// Computes the price of a limit from the fuel without it, a fraction of the fuel with it.

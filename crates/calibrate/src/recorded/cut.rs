@@ -66,13 +66,12 @@ pub fn find(found: &mut Found) {
     let Some(share) = estimate(&flags, mean) else {
         return;
     };
-    found.add(value(
+    found.add(Value::of_seconds(
         "fuel cut in overrun",
-        "CL-5",
         None,
+        "CL-5",
         "% of time",
         share,
-        "s",
     ));
     if share.value < 1.0 {
         found.findings.doubts.push(
@@ -85,25 +84,11 @@ pub fn find(found: &mut Found) {
     }
 }
 
-/// A value with what it is from.
-fn value(
-    name: &'static str,
-    label: &'static str,
-    key: Option<&'static str>,
-    unit: &'static str,
-    own: Estimate,
-    counted: &'static str,
-) -> Value {
+/// An engine speed from the ends of cuts (CL-6).
+fn of_ends(name: &'static str, key: &'static str, own: Estimate) -> Value {
     Value {
-        name,
-        key,
-        label,
-        unit,
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted,
-        before: None,
+        counted: "ends",
+        ..Value::of_seconds(name, Some(key), "CL-6", "rpm", own)
     }
 }
 
@@ -148,12 +133,10 @@ fn ends(found: &mut Found, pairs: &[[Second; 2]], idle_g_s: f64) -> Option<f64> 
         return None;
     };
     let back = between(&events(BACK_SHARE)).filter(|own| own.count >= FEWEST_EVENTS);
-    let key = Some("engine.fuel.cut_above_rpm");
-    found.add(value("fuel cut ends", "CL-6", key, "rpm", end, "ends"));
+    found.add(of_ends("fuel cut ends", "engine.fuel.cut_above_rpm", end));
     let mut own = back.unwrap_or(end);
     own.value = own.value.min(end.value - LEAST_BAND_RPM);
-    let key = Some("engine.fuel.fuel_back_rpm");
-    found.add(value("fuel is back", "CL-6", key, "rpm", own, "ends"));
+    found.add(of_ends("fuel is back", "engine.fuel.fuel_back_rpm", own));
     Some(end.value)
 }
 
@@ -180,17 +163,13 @@ fn from_coolant(
             .count()
     };
     match own.filter(|own| colder(own.value) >= FEWEST) {
-        Some(own) => found.add(Value {
-            name: "fuel cut from",
-            key: Some("engine.fuel.cut_from_degc"),
-            label: "CL-7",
-            unit: "degC",
-            value: own.value,
-            range: own.range,
-            count: own.count,
-            counted: "s",
-            before: None,
-        }),
+        Some(own) => found.add(Value::of_seconds(
+            "fuel cut from",
+            Some("engine.fuel.cut_from_degc"),
+            "CL-7",
+            "degC",
+            own,
+        )),
         None => {
             let mut cut: Vec<f64> = list
                 .iter()

@@ -49,17 +49,7 @@ pub fn find(found: &mut Found) {
         .filter_map(|own| Some((own.block, own.fuel_g_s?)))
         .collect();
     let hot = median(&speeds).filter(|own| own.count >= FEWEST); // CL-3
-    let value = |name, key, unit, own: Estimate| Value {
-        name,
-        key,
-        label: "CL-3",
-        unit,
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted: "s",
-        before: None,
-    };
+    let value = |name, key, unit, own| Value::of_seconds(name, key, "CL-3", unit, own);
     match hot {
         Some(own) => found.add(value("idle, warm", Some("engine.idle.hot_rpm"), "rpm", own)),
         None if known > 0 => found.cannot(format!(
@@ -73,17 +63,12 @@ pub fn find(found: &mut Found) {
     }
     if known >= FEWEST {
         let share = 100.0 * stopped as f64 / known as f64;
-        found.add(Value {
-            name: "engine off at rest",
-            key: None,
-            label: "CL-3",
-            unit: "% of time",
+        let own = Estimate {
             value: share,
             range: None,
             count: known,
-            counted: "s",
-            before: None,
-        });
+        };
+        found.add(value("engine off at rest", None, "% of time", own));
     }
     if let Some(hot) = hot {
         cold(found, &resting, hot.value);
@@ -111,17 +96,13 @@ fn cold(found: &mut Found, resting: &[Second], hot_rpm: f64) {
     let coldest = found.seconds.iter().filter_map(|own| own.coolant_degc);
     let coldest = coldest.fold(f64::INFINITY, f64::min);
     match median(&list).filter(|own| own.count >= FEWEST) {
-        Some(own) => found.add(Value {
-            name: "idle, cold",
-            key: Some(key),
-            label: "CL-4",
-            unit: "rpm",
-            value: own.value,
-            range: own.range,
-            count: own.count,
-            counted: "s",
-            before: None,
-        }),
+        Some(own) => found.add(Value::of_seconds(
+            "idle, cold",
+            Some(key),
+            "CL-4",
+            "rpm",
+            own,
+        )),
         None if coldest.is_finite() => found.cannot(format!(
             "cold idle: {} at rest with coolant below {} degC later than {STARTED_S} s after the log begins; its coldest coolant is {} degC",
             seconds(list.len()),

@@ -30,6 +30,7 @@ use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{ParamSet, Setup};
 use ratio::Ratios;
+use resample::Estimate;
 use seconds::Second;
 use serde::Serialize;
 
@@ -83,6 +84,29 @@ pub struct Value {
     pub counted: &'static str,
     /// Value of the car's own files.
     pub before: Option<f64>,
+}
+
+impl Value {
+    /// A quantity from seconds of the logs.
+    fn of_seconds(
+        name: &'static str,
+        key: Option<&'static str>,
+        label: &'static str,
+        unit: &'static str,
+        own: Estimate,
+    ) -> Self {
+        Value {
+            name,
+            key,
+            label,
+            unit,
+            value: own.value,
+            range: own.range,
+            count: own.count,
+            counted: "s",
+            before: None,
+        }
+    }
 }
 
 /// Engine speed over something else.

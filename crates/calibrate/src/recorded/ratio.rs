@@ -12,6 +12,7 @@ use super::resample::{Estimate, between, median, quantile};
 use super::seconds::Second;
 use super::{Found, Value};
 use cvtcycle_config::setup::Setup;
+use cvtcycle_model::cycle::is_standstill;
 use cvtcycle_model::transmission::Transmission;
 use std::f64::consts::PI;
 
@@ -96,17 +97,18 @@ fn kind(found: &mut Found) {
         .filter(|count| **count as f64 >= least)
         .count();
     let share = 100.0 * occupied as f64 / bins as f64;
-    found.add(Value {
-        name: "ratios that occur",
-        key: None,
-        label: "CL-8",
-        unit: "% of range",
+    let own = Estimate {
         value: share.min(100.0),
         range: None,
         count: held.len(),
-        counted: "s",
-        before: None,
-    });
+    };
+    found.add(Value::of_seconds(
+        "ratios that occur",
+        None,
+        "CL-8",
+        "% of range",
+        own,
+    ));
     if share < FILLED {
         // CL-8
         found.findings.doubts.push(format!(
@@ -155,20 +157,10 @@ fn high(found: &mut Found) {
         ));
         return;
     };
-    let value = |name, key, unit, own: Estimate| Value {
-        name,
-        key,
-        label: "CL-9",
-        unit,
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted: "s",
-        before: None,
-    };
-    found.add(value(
+    found.add(Value::of_seconds(
         "engine over road speed, high",
         None,
+        "CL-9",
         "rpm per km/h",
         own,
     ));
@@ -179,16 +171,13 @@ fn high(found: &mut Found) {
             range: own.range.map(|ends| ends.map(|end| end * belt)),
             ..own
         };
-        let own = Value {
-            label: "CL-10",
-            ..value(
-                "belt ratio, high",
-                Some("transmission.cvt.ratio.high"),
-                "-",
-                own,
-            )
-        };
-        found.add(own);
+        found.add(Value::of_seconds(
+            "belt ratio, high",
+            Some("transmission.cvt.ratio.high"),
+            "CL-10",
+            "-",
+            own,
+        ));
     }
 }
 
@@ -227,7 +216,10 @@ fn lock_up(found: &mut Found) {
             match rpm > 1.08 * idle_rpm {
                 true => locked_kmh = Some(own.kmh()),
                 false => {
-                    if let Some(at) = locked_kmh.take().filter(|_| own.kmh() > 0.0) {
+                    if let Some(at) = locked_kmh
+                        .take()
+                        .filter(|_| !is_standstill(own.kmh() / 3.6))
+                    {
                         opens.push([own.kmh(), at]); // CL-11
                     }
                 }
@@ -250,15 +242,8 @@ fn lock_up(found: &mut Found) {
     ] {
         match between(&list).filter(|own| own.count >= FEWEST_EVENTS) {
             Some(own) => found.add(Value {
-                name,
-                key: Some(key),
-                label: "CL-11",
-                unit: "km/h",
-                value: own.value,
-                range: own.range,
-                count: own.count,
                 counted: "events",
-                before: None,
+                ..Value::of_seconds(name, Some(key), "CL-11", "km/h", own)
             }),
             None => found.cannot(format!(
                 "{name}: {} of a warm car, {FEWEST_EVENTS} are needed",

@@ -71,18 +71,8 @@ fn level(found: &mut Found) {
         ));
         return;
     };
-    let value = |name, key, label, own: Estimate| Value {
-        name,
-        key,
-        label,
-        unit: "degC",
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted: "s",
-        before: None,
-    };
-    found.add(value("coolant, warm", None, "CL-15", own));
+    let value = |name, key, own| Value::of_seconds(name, key, "CL-15", "degC", own);
+    found.add(value("coolant, warm", None, own));
     let shifts: Vec<(usize, f64)> = list
         .iter()
         .filter_map(|own| Some((own.block, own.coolant_degc? - own.computed?.coolant_degc)))
@@ -99,7 +89,7 @@ fn level(found: &mut Found) {
             range: shift.range.map(|ends| ends.map(|end| before + end)),
             count: shift.count,
         };
-        found.add(value(name, Some(key), "CL-15", own));
+        found.add(value(name, Some(key), own));
     }
 }
 
@@ -162,17 +152,8 @@ fn capacity(found: &mut Found) -> Result<(), Problems> {
         return Ok(());
     };
     let has_fuel = found.seconds.iter().any(|own| own.fuel_g_s.is_some());
-    found.add(Value {
-        name: "warm-up",
-        key: None,
-        label: "CL-16",
-        unit: if has_fuel { "g/K" } else { "s/K" },
-        value: own.value,
-        range: own.range,
-        count: own.count,
-        counted: "s",
-        before: None,
-    });
+    let unit = if has_fuel { "g/K" } else { "s/K" };
+    found.add(Value::of_seconds("warm-up", None, "CL-16", unit, own));
     let Some(car) = found.question.car.as_ref() else {
         return Ok(());
     };
@@ -202,17 +183,13 @@ fn capacity(found: &mut Found) -> Result<(), Problems> {
         return Ok(());
     }
     let relative = |end: f64| value * end / own.value;
-    found.add(Value {
-        name: "heat capacity of the block",
-        key: Some(BLOCK),
-        label: "CL-16",
-        unit: "kJ/K",
+    let own = Estimate {
         value,
         range: own.range.map(|ends| ends.map(relative)),
-        count: own.count,
-        counted: "s",
-        before: None,
-    });
+        ..own
+    };
+    let name = "heat capacity of the block";
+    found.add(Value::of_seconds(name, Some(BLOCK), "CL-16", "kJ/K", own));
     Ok(())
 }
 

@@ -135,7 +135,7 @@ impl Schema {
         });
     }
 
-    /// The column of the schema for each column of the file; none where none of them is known in a table that may have others.
+    /// Finds the column of the schema for each column of the file; `None` if the table may have others and no name is known.
     fn columns_of(
         &self,
         names: &Fields<'_>,

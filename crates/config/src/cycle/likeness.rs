@@ -1,6 +1,6 @@
 //! Likeness of a recording to a shipped cycle: the same speeds, those in another unit, or a few others.
 
-use super::{Cycle, names, of_seconds};
+use super::{Cycle, is_standstill, names, of_seconds};
 use crate::log::{Likeness, Samples, median};
 use crate::readable;
 
@@ -98,7 +98,7 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
         let expected = factor * **other;
         (**own - expected).abs() <= ALIKE.0 + 0.6 * resolution_m_s + ALIKE.1 * expected
     };
-    let moving = pairs().filter(|(own, other)| **own > 0.0 || **other > 0.0);
+    let moving = pairs().filter(|(own, other)| !(is_standstill(**own) && is_standstill(**other)));
     let (count, same) = moving.fold((0, 0), |(count, same), pair| {
         (count + 1, same + usize::from(is_same(&pair)))
     });

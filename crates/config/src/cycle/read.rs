@@ -6,7 +6,7 @@ use super::distance::{DistanceRow, Stretch, stretches};
 use super::gears::{GearColumns, GearCommand, commands};
 use super::likeness::likeness;
 use super::row::{GEARS, MAX_DURATION_S, NOTE, Over, Row, Rows, schema};
-use super::{Cycle, Interval, Measured, Recording, Trace, Weighting};
+use super::{Cycle, Interval, Measured, Recording, Trace, Weighting, is_standstill};
 use crate::channel::Quantity;
 use crate::csv::{self, Collector, Columns, Entry, Line, Table};
 use crate::log::{self, Channel, Log, Resolution, Samples};
@@ -206,7 +206,7 @@ fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
         let before = rows.last().copied().unwrap_or_default();
         let step = samples.time_s[k] - samples.time_s[before];
         // A start and a stop keep their instant.
-        let turns = (samples.speed_m_s[k] <= 0.0) != (samples.speed_m_s[k - 1] <= 0.0);
+        let turns = is_standstill(samples.speed_m_s[k]) != is_standstill(samples.speed_m_s[k - 1]);
         if !is_fast || k == last || turns || step >= NEAR_S {
             rows.push(k);
         }
@@ -214,7 +214,7 @@ fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
     let trace = |speed_m_s: &[f64]| {
         let interval = |pair: &[usize]| {
             let (from, to) = (pair[0], pair[1]);
-            let rests = speed_m_s[from] <= 0.0 && speed_m_s[to] <= 0.0;
+            let rests = is_standstill(speed_m_s[from]) && is_standstill(speed_m_s[to]);
             Interval {
                 start_s: samples.time_s[from] - first_s,
                 end_s: samples.time_s[to] - first_s,

@@ -3,6 +3,7 @@
 use super::gears::Note;
 use crate::csv::{self, Cells, Collector, Column, Columns, Foreign, Schema, Table};
 use crate::{Bound, Problem, readable};
+use cvtcycle_model::cycle::is_standstill;
 
 /// Index of the column of times.
 const TIME: usize = 0;
@@ -328,7 +329,7 @@ fn check_distance(
         cells.report(DISTANCE, problems, problem);
     }
     // Refers to the row above: the last one of a table may end at rest without a time.
-    let at_rest = before.filter(|before| before.speed_m_s.is_some_and(|v| v <= 0.0));
+    let at_rest = before.filter(|before| before.speed_m_s.is_some_and(is_standstill));
     if at_rest.is_some_and(|before| before.stop_s <= 0.0) {
         let problem =
             Problem::missing("the car comes to rest in the row above without a time at rest")
@@ -336,13 +337,13 @@ fn check_distance(
                 .hint("give the seconds that the car is at rest");
         cells.report(STOP, problems, problem);
     }
-    if row.stop_s > 0.0 && row.speed_m_s.is_some_and(|v| v > 0.0) {
+    if row.stop_s > 0.0 && row.speed_m_s.is_some_and(|v| !is_standstill(v)) {
         let problem = Problem::conflict("this row has a time at rest and a speed")
             .allowed("0 where the speed is above 0")
             .hint("set the speed of the row to 0 where the car stops");
         cells.report(STOP, problems, problem);
     }
-    if at_rest.is_some() && row.speed_m_s.is_some_and(|v| v <= 0.0) {
+    if at_rest.is_some() && row.speed_m_s.is_some_and(is_standstill) {
         let problem = Problem::conflict("the car cannot drive from rest to rest")
             .allowed("a speed above 0 between two stops")
             .hint("the speed of a row is the target up to the next one");
@@ -437,7 +438,7 @@ fn check_engine_off(
     cells: &csv::Row<'_, '_>,
     problems: &mut Collector<'_>,
 ) {
-    if row.speed_m_s.is_none_or(|speed_m_s| speed_m_s <= 0.0) {
+    if row.speed_m_s.is_none_or(is_standstill) {
         return;
     }
     if row.engine_off {

@@ -4,7 +4,7 @@ use super::samples::Samples;
 use super::smooth::{Resolution, smoothed};
 use crate::channel::Repairs;
 use crate::{Problem, Setting, readable};
-use cvtcycle_model::cycle::Repair;
+use cvtcycle_model::cycle::{Repair, is_standstill};
 
 /// Speed above which a car is moving, m/s.
 const MOVING_M_S: f64 = 0.5;
@@ -123,7 +123,7 @@ impl Treatment<'_> {
             .collect()
     }
 
-    /// Speeds below 0 and above what cars drive.
+    /// Speeds below 0 and above what cars drive; noise of a car at rest becomes 0.
     fn limits(&mut self) {
         let negative = self.rows(|speed| speed < 0.0);
         let speeds = negative.iter().map(|k| self.samples.speed_m_s[*k]);
@@ -147,6 +147,12 @@ impl Treatment<'_> {
                     .hint("reversing cannot be driven: is a sign of the direction in the column?");
                 self.problem(self.samples.lines[*first], problem);
             }
+        }
+        for speed in self.samples.speed_m_s.iter_mut() {
+            *speed = match is_standstill(*speed) {
+                true => speed.min(0.0),
+                false => *speed,
+            };
         }
         let fast = self.rows(|speed| 3.6 * speed > 300.0);
         if let Some(first) = fast.first().copied() {
@@ -261,7 +267,9 @@ impl Treatment<'_> {
         }
         let first = gaps.first().into_iter().chain(&jumps).min().copied();
         let line = samples.lines[first.unwrap_or_default() + 1];
-        let from_rest = jumps.first().is_some_and(|k| samples.speed_m_s[*k] <= 0.0);
+        let from_rest = jumps
+            .first()
+            .is_some_and(|k| is_standstill(samples.speed_m_s[*k]));
         let hint = match (gaps.is_empty(), raster) {
             (false, _) => "fill the gap with rows, or let the repair `cut` take its time out",
             (true, _) if from_rest && jumps.len() == 1 => {

@@ -11,6 +11,8 @@
 //! accelerations that are there. With LG-3 fuel stays within 1 % and the difference to the manual car within 0.5 points on UDDS, HWFET and US06 at 10, 4, 2
 //! and 1 Hz (tests/cli/commands/log.rs).
 
+use cvtcycle_model::cycle::is_standstill;
+
 /// Density of the change of acceleration (LG-3), (m/s2)2/s.
 const CHANGE: f64 = 0.25;
 /// Error of an acceleration beyond which speeds are smoothed (LG-4), m/s2.
@@ -21,7 +23,7 @@ const MAX_RESOLUTION_M_S: f64 = 0.6;
 const MAX_NOISE_STEP_S: f64 = 0.5;
 /// Most values that are sorted.
 const SAMPLE: usize = 200_000;
-/// Variance of a speed of 0, of that of another: a car at rest is at rest.
+/// Variance of a speed at standstill, of that of another: a car at rest is at rest.
 const AT_REST: f64 = 1e-6;
 
 /// Rate and resolution of a recorded speed.
@@ -58,7 +60,10 @@ impl Resolution {
     pub(crate) fn of(time_s: &[f64], speed_m_s: &[f64]) -> Option<Resolution> {
         let steps = time_s.windows(2).take(SAMPLE).map(|pair| pair[1] - pair[0]);
         let step_s = median(steps.collect())?;
-        let moving = speed_m_s.iter().copied().filter(|speed| *speed > 0.0);
+        let moving = speed_m_s
+            .iter()
+            .copied()
+            .filter(|speed| !is_standstill(*speed));
         let mut speeds: Vec<f64> = moving.take(SAMPLE).collect();
         speeds.sort_by(f64::total_cmp);
         // 1e-6: two numbers that are one before their unit was changed
@@ -71,8 +76,9 @@ impl Resolution {
         let mut variance = speed * speed / 12.0;
         if step_s <= MAX_NOISE_STEP_S {
             let thirds = speed_m_s.windows(4).zip(time_s.windows(4)).take(SAMPLE);
-            let even =
-                thirds.filter(|(v, t)| v.iter().all(|v| *v > 0.0) && t[3] - t[0] < 4.5 * step_s);
+            let even = thirds.filter(|(v, t)| {
+                !v.iter().any(|v| is_standstill(*v)) && t[3] - t[0] < 4.5 * step_s
+            });
             let thirds = even
                 .map(|(v, _)| (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]).abs())
                 .collect();
@@ -96,7 +102,7 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(*median)
 }
 
-/// Smooths speeds (LG-3), with `factor` times the density of the change of acceleration. Speeds of 0 stay 0.
+/// Smooths speeds (LG-3), with `factor` times the density of the change of acceleration. The speed of a car at rest is 0.
 ///
 /// A cubic smoothing spline by Reinsch's algorithm, five diagonals of n - 2 unknowns: written here because the crates for it bring sparse matrices of
 /// another linear algebra.
@@ -107,7 +113,13 @@ pub(super) fn smoothed(time_s: &[f64], speed_m_s: &[f64], error_m_s: f64, factor
     }
     let alpha = error_m_s * error_m_s / (CHANGE * factor);
     let h: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let weight = |k: usize| if speed_m_s[k] <= 0.0 { AT_REST } else { 1.0 };
+    let weight = |k: usize| {
+        if is_standstill(speed_m_s[k]) {
+            AT_REST
+        } else {
+            1.0
+        }
+    };
     // Q' is the second divided difference, R the integral of hat functions: (R + alpha Q' W Q) gamma = Q' y, v = y - alpha W Q gamma.
     let q = |j: usize| [1.0 / h[j], -1.0 / h[j] - 1.0 / h[j + 1], 1.0 / h[j + 1]];
     let m = n - 2;
@@ -161,7 +173,13 @@ pub(super) fn smoothed(time_s: &[f64], speed_m_s: &[f64], error_m_s: f64, factor
             smooth[j + k] -= alpha * weight(j + k) * q * x[j];
         }
     }
-    let still = |(own, speed): (f64, &f64)| if *speed <= 0.0 { 0.0 } else { own.max(0.0) };
+    let still = |(own, speed): (f64, &f64)| {
+        if is_standstill(*speed) {
+            0.0
+        } else {
+            own.max(0.0)
+        }
+    };
     smooth.into_iter().zip(speed_m_s).map(still).collect()
 }
 

@@ -119,9 +119,11 @@ fn of_value(
             format!("{value}: as {REFERENCE}, or assumed{within}"),
         ),
         status => {
-            let source = info.map_or("", |info| info.source.as_str());
-            let words = format!("{value}: {status}, {source}{within}");
-            (Origin::Value, words.replace(", ;", ";"))
+            let source = match info.map_or("", |info| info.source.as_str()) {
+                "" => String::new(),
+                source => format!(", {source}"),
+            };
+            (Origin::Value, format!("{value}: {status}{source}{within}"))
         }
     }
 }

@@ -88,7 +88,7 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
         ],
         Transmission::Manual(_) => [None, None, None, None, None, None],
     };
-    // What is wrong with a measured map is wrong with every number: first.
+    // Doubts about a measured map are first: every number depends on it.
     let [.., ratio] = &of_box;
     let first = ratio.iter().cloned().chain(of_fuel);
     let others = all.into_iter().chain(of_box.clone().into_iter().take(5));
@@ -96,7 +96,7 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
     first.chain(others.flatten()).chain(of_oil).collect()
 }
 
-/// What the points of a measured map of fuel let doubt.
+/// Doubts about the points of a measured map of fuel, a sentence each.
 fn fuel_map_doubts(setup: &Setup) -> Vec<String> {
     let engine = setup.engine();
     match &engine.fuel {

@@ -95,6 +95,12 @@ impl Setup {
     /// The car of a set of values; its keys and its origin, which take as long as all the rest, are left out ([`ParamSet::setup`] has them).
     #[must_use]
     pub fn from_params(params: &ParamSet) -> Self {
+        let frame = &params.read.inputs.frame;
+        Setup::noted(params, frame.notes(params.vehicle(), &params.read.keys))
+    }
+
+    /// As [`Setup::from_params`], with these notes.
+    fn noted(params: &ParamSet, notes: Vec<String>) -> Self {
         let head = &params.assembled.head;
         let frame = &params.read.inputs.frame;
         Setup {
@@ -104,7 +110,7 @@ impl Setup {
             baselines: head.baselines.clone(),
             vehicle: params.vehicle().clone(),
             keys: Vec::new(),
-            notes: frame.notes(params.vehicle(), &params.read.keys),
+            notes,
             origin: Origin::default(),
         }
     }
@@ -335,7 +341,8 @@ pub fn read_lubricant(
 ) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
     let document = Document::parse(file, text)?;
     let reader = Reader::new(&document).with_files(files);
-    let lubricant = Lubricant::from_values(&reader.root(), &stem(file));
+    let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
+    let lubricant = Lubricant::from_values(&reader.root(), &name);
     Ok((lubricant, reader.finish()?))
 }
 

@@ -200,23 +200,25 @@ impl ParamSet {
     /// The car with its keys and origin, as [`super::load`] gives it.
     #[must_use]
     pub fn setup(&self) -> Setup {
-        Setup {
-            keys: self.keys(),
-            origin: self.read.inputs.origin(),
-            ..Setup::from_params(self)
-        }
+        self.setup_with(self.keys())
     }
 
-    /// As [`ParamSet::setup`], without a copy of what only this set has.
+    /// As [`ParamSet::setup`], without a copy of the keys that only this set has.
     pub(super) fn into_setup(mut self) -> Setup {
         let keys = match Arc::get_mut(&mut self.read) {
             Some(read) if self.changes.is_empty() => std::mem::take(&mut read.keys),
             _ => self.keys(),
         };
+        self.setup_with(keys)
+    }
+
+    /// The car with these keys, from which its notes are.
+    fn setup_with(&self, keys: Vec<KeyInfo>) -> Setup {
+        let notes = self.read.inputs.frame.notes(self.vehicle(), &keys);
         Setup {
             keys,
             origin: self.read.inputs.origin(),
-            ..Setup::from_params(&self)
+            ..Setup::noted(self, notes)
         }
     }
 

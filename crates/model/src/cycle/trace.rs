@@ -4,6 +4,16 @@ use super::gears::{GearColumns, GearCommand};
 use crate::math::{Real, exp, larger, ln, physics};
 use std::sync::Arc;
 
+/// Speed below which a car is at rest, m/s: 0.1 km/h. ASSUMED, between the noise of wheel speed sensors at rest, up to 0.05 km/h, and the least speed of a
+/// shipped cycle that moves, 0.16 km/h (0.1 mph); a table in steps of 0.1 km/h keeps all of its speeds.
+pub const STANDSTILL_M_S: f64 = 0.1 / 3.6;
+
+/// True for the speed of a car at rest, m/s.
+#[must_use]
+pub fn is_standstill(speed_m_s: f64) -> bool {
+    speed_m_s < STANDSTILL_M_S
+}
+
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -29,9 +39,19 @@ impl Interval {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
     }
 
-    /// True if the car moves in it.
+    /// True if the car moves in it. The intervals of a trace have 0 where it is at rest.
     fn moves(&self) -> bool {
         self.start_speed_m_s > 0.0 || self.end_speed_m_s > 0.0
+    }
+
+    /// The interval with 0 for each end at which the car is at rest.
+    fn at_rest(self) -> Self {
+        let speed_m_s = |own: f64| if is_standstill(own) { 0.0 } else { own };
+        Interval {
+            start_speed_m_s: speed_m_s(self.start_speed_m_s),
+            end_speed_m_s: speed_m_s(self.end_speed_m_s),
+            ..self
+        }
     }
 
     // 1e-9: an interval that is a multiple of max_dt up to rounding is not cut once more
@@ -129,6 +149,13 @@ pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3] {
 }
 
 impl Motion {
+    /// True in a step at rest. Exact: the trace has 0 at its rows where the car is at rest ([`STANDSTILL_M_S`]), and parts of the interval in which it
+    /// starts or stops have a mean speed, however low, that takes work.
+    #[inline]
+    pub fn rests(&self) -> bool {
+        self.speed_m_s <= 0.0
+    }
+
     /// Speed linear from one value to another, m/s, within a time, s.
     #[inline]
     pub fn between(from_m_s: f64, to_m_s: f64, dt_s: f64) -> Self {
@@ -195,8 +222,16 @@ impl Trace {
         Self::with_gears(intervals, GearColumns::default())
     }
 
-    /// A trace with prescribed gears, one command an interval.
-    pub fn with_gears(intervals: Vec<Interval>, gears: GearColumns) -> Self {
+    /// A trace with prescribed gears, one command an interval. Speeds below [`STANDSTILL_M_S`] become 0: noise at rest moves no car.
+    pub fn with_gears(mut intervals: Vec<Interval>, gears: GearColumns) -> Self {
+        for interval in &mut intervals {
+            *interval = interval.at_rest();
+        }
+        Self::as_given(intervals, gears)
+    }
+
+    /// A trace of intervals with any speeds.
+    fn as_given(intervals: Vec<Interval>, gears: GearColumns) -> Self {
         Self {
             motions: Arc::new(intervals.iter().map(Interval::motion).collect()),
             intervals: Arc::new(intervals),
@@ -287,7 +322,8 @@ impl Trace {
             intervals.push(rest);
             from.push(number);
         }
-        Self::with_gears(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
+        // A cut in a start or a stop may lie below the speed of standstill: the motion stays the same.
+        Self::as_given(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
     }
 
     /// Duration, s.

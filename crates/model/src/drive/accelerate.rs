@@ -13,7 +13,7 @@
 //! who lets the engine speed up before the start is not modelled: times are those of a driver who pushes the pedal down at idle. Tyres slip by nothing up to the limit.
 
 use super::{Car, Drive, Row, State};
-use crate::cycle::{GearCommand, Motion, Step};
+use crate::cycle::{GearCommand, Motion, Step, is_standstill};
 use crate::engine::Running;
 use crate::flags::Flags;
 use crate::math::{Curve, larger, smaller};
@@ -76,7 +76,7 @@ impl Grip {
 /// Question of a full-throttle drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullThrottle {
-    /// Speed at the begin, m/s.
+    /// Speed at the begin, m/s; a standing start below [`STANDSTILL_M_S`](crate::cycle::STANDSTILL_M_S).
     pub from_m_s: f64,
     /// Speed at which it ends, m/s.
     pub to_m_s: f64,
@@ -214,6 +214,13 @@ impl Accelerated {
 pub fn accelerate(car: &Car, asked: &FullThrottle) -> Accelerated {
     let mut car = car.clone();
     car.engine.start_stop = None; // the engine runs
+    let asked = &FullThrottle {
+        from_m_s: match is_standstill(asked.from_m_s) {
+            true => 0.0,
+            false => asked.from_m_s,
+        },
+        ..asked.clone()
+    };
     let mut pedal = Pedal::new(&car, asked);
     let mut found = Accelerated {
         from_m_s: asked.from_m_s,
@@ -407,7 +414,7 @@ impl<'a> Pedal<'a> {
         let fast = rises && w > self.car.engine.highest_rad_s;
         // A manual box takes a lower gear where the one in force lacks torque, and one where the clutch is open (MB-5): not here.
         let manual = matches!(self.car.transmission, Transmission::Manual(_));
-        let moves = step.motion.speed_m_s > 0.0;
+        let moves = !step.motion.rests();
         let closes = opens && !row.flags.contains(Flags::CLUTCH_OPEN);
         let other_gear = manual && moves && (closes || row.gear != self.gear);
         let short = row.deficit_w > ROUNDING * self.car.engine.rated_w || other_gear;

@@ -118,6 +118,14 @@ pub struct Row<R: Real = f64> {
     pub flags: R::PerLane<Flags>,
 }
 
+impl<R: Real> Row<R> {
+    /// True at standstill, as [`crate::cycle::Motion::rests`].
+    #[inline]
+    pub fn rests(&self) -> bool {
+        self.speed_m_s <= 0.0
+    }
+}
+
 pub(super) type Input<'a, R = f64> = StepInput<'a, EngineAtTemperature<'a, R>, R>;
 
 /// Rotating energy and crank torque of a step.

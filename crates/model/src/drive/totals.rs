@@ -328,7 +328,7 @@ impl<R: Real> Recorder<R> for Totals<R> {
         lengthen(&mut p.distance_m, row.distance_m);
         let fuel_kg = row.fuel_kg_s * row.dt_s;
         p.fuel_kg = p.fuel_kg + fuel_kg;
-        if row.speed_m_s <= 0.0 {
+        if row.rests() {
             p.standstill_fuel_kg = p.standstill_fuel_kg + fuel_kg;
         }
         p.wheel_positive_j = p.wheel_positive_j + row.wheel_work_positive_j;
@@ -338,7 +338,7 @@ impl<R: Real> Recorder<R> for Totals<R> {
         }
         p.terms.add(terms, row.dt_s);
         for run in 0..R::LANES {
-            if row.speed_m_s > 0.0 {
+            if !row.rests() {
                 let cause = *R::get(&row.clamp_cause, run) as usize;
                 lengthen(
                     &mut R::get_mut(&mut self.clamp_cause_s, run)[cause],

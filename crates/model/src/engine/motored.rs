@@ -1,4 +1,4 @@
-//! What an engine takes up without fuel.
+//! Torque that turns an engine without fuel: friction, pumping, accessories of its own.
 
 use crate::math::{Gather, Real, physics};
 

@@ -126,13 +126,10 @@ impl StartStop {
     pub fn command(&self, now: &Conditions, past: &mut StartStopState) -> Command {
         let was_stopped = past.stopped;
         past.fastest_m_s = larger(now.speed_m_s, past.fastest_m_s);
-        past.stopped = now.speed_m_s <= 0.0 && self.stops(now, past);
+        let rests = now.speed_m_s <= 0.0; // exact: a trace has 0 where the car is at rest
+        past.stopped = rests && self.stops(now, past);
         past.on_s += now.dt_s;
-        past.stood_s = if now.speed_m_s > 0.0 {
-            0.0
-        } else {
-            past.stood_s + now.dt_s
-        };
+        past.stood_s = if rests { past.stood_s + now.dt_s } else { 0.0 };
         if past.stopped {
             past.fastest_m_s = 0.0;
             past.stopped_s += now.dt_s;

@@ -29,7 +29,7 @@ pub struct BsfcMap {
     pub fuel_pa: Vec<Vec<f64>>,
     /// Hot friction l, l2 as in the Willans line, bar and bar s2/m2 (BM-2).
     pub friction: (f64, f64),
-    /// Which pairs lie within the points of the file, as `fuel_pa`; none where all do.
+    /// True for pairs of speed and load within the points of the file, in the order of `fuel_pa`; `None` if all are.
     pub known: Option<Arc<Vec<Vec<bool>>>>,
     /// The points of the file; none of a map that is from none.
     pub origin: Option<Arc<Origin>>,
@@ -44,7 +44,7 @@ pub struct Origin {
     pub read_as: Option<String>,
     /// Swept volume of the engine that was measured, m3.
     pub displacement_m3: f64,
-    /// Its points, by speed and load.
+    /// Points of the file, sorted by speed and load.
     pub points: Vec<Point>,
     /// Rows without meaning that were left out, and the first line of one.
     pub left_out: Option<(usize, usize)>,

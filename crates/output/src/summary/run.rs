@@ -206,7 +206,7 @@ impl RunSummary {
         self.fuel_l_per_h.or_else(of_old)
     }
 
-    /// What the headline is over: the distance, or the time where that is too short or too slow for L/100 km.
+    /// Denominator of the headline fuel: distance, or time on a drive too short or too slow for L/100 km.
     pub fn over(&self) -> Over {
         match self.headline_fuel() {
             Some(_) => Over::Distance,

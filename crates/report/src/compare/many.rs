@@ -85,7 +85,7 @@ pub struct Side {
 }
 
 impl Side {
-    /// What the fuel is over.
+    /// Denominator of the fuel: distance, or time for a car that hardly moves.
     pub fn over(&self) -> Over {
         match self.fuel_l_per_100km {
             Some(_) => Over::Distance,

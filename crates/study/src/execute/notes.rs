@@ -45,8 +45,8 @@ pub(super) fn not_drawn(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     cars.iter().flat_map(of_car).collect()
 }
 
-/// Lists notes that hold for a car with every word of a factor but not without it: oils without a friction of their own. What is not measured with an
-/// oil is said for those oils.
+/// Lists notes that hold for a car with every word of a factor but not without it: oils without a friction of their own. Contacts whose
+/// friction was not measured are listed with the names of those oils.
 pub(super) fn notes(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     let mut list: Vec<String> = Vec::new();
     for car in cars {

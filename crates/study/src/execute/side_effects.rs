@@ -75,7 +75,7 @@ impl SideEffects {
 
     /// Takes the next rows.
     pub fn see(&mut self, rows: &[Row]) {
-        for row in rows.iter().filter(|row| row.speed_m_s > 0.0) {
+        for row in rows.iter().filter(|row| !row.rests()) {
             let cause = row.clamp_cause;
             if row.clamp_safety.is_finite() && !matches!(cause, ClampCause::Law | ClampCause::Cap) {
                 self.floor_s += row.dt_s;

@@ -44,7 +44,7 @@ impl Step {
 /// Columns after those of the trace and its flags.
 fn more() -> Vec<Column<Step>> {
     columns! { Step;
-    "moving" s => truth(s.row().speed_m_s > 0.0);
+    "moving" s => truth(!s.row().rests());
     "coupled" s => truth(!s.row().flags.contains(Flags::CLUTCH_SLIPPING) && !s.row().flags.contains(Flags::CLUTCH_OPEN));
     "launch" s => s.launch;
     "since_launch_s" s => s.since_launch_s;
@@ -145,7 +145,7 @@ pub fn trace(source: &Source, driven: &Rc<Driven>) -> Table {
     let (mut launch, mut since_launch_s, mut at_rest) = (0.0, f64::NAN, true);
     let mut rows = Rows::new(driven.outcome.rows.len());
     for (place, row) in driven.outcome.rows.iter().enumerate() {
-        let moving = row.speed_m_s > 0.0;
+        let moving = !row.rests();
         if moving && at_rest {
             (launch, since_launch_s) = (launch + 1.0, 0.0);
         }

@@ -66,3 +66,33 @@ fn a_small_primary_is_flagged_or_costs_pressure() {
     assert!((pump(&short) / pump(&ample) - 1.0).abs() < 0.01);
     assert!(pump(&valves) > 1.1 * pump(&ample));
 }
+
+/// Property: the pressure that control needs may go to none. A secondary without pressure next to a primary with some, which the solution of a step
+/// passes, is a point like any other: the drive is that of a vanishing pressure, every step converges and the pump has flow enough.
+#[test]
+fn a_secondary_without_pressure_is_no_limit_of_the_pump() {
+    let floors = ["clutch_return_bar", "clutch_bar_per_nm", "strand_n"];
+    let none = floors.map(|key| format!("transmission.cvt.pressure.{key}=0"));
+    let sensor = "transmission.cvt.circuit.torque_sensor";
+    for circuit in [
+        vec!["transmission.cvt.circuit=independent".to_owned()],
+        vec![
+            "transmission.cvt.circuit=torque_sensor".to_owned(),
+            format!("{sensor}.clamp_piston_cm2=100"),
+            format!("{sensor}.shift_piston_cm2=60"),
+        ],
+    ] {
+        let rows = |control_bar: &str| {
+            let control = format!("transmission.cvt.pressure.control_bar={control_bar}");
+            let mut set = vec!["transmission.cvt.clamp=torque_following", &control];
+            set.extend(none.iter().chain(&circuit).map(String::as_str));
+            soak_rows(&car("civic_20_cvt", &set), &cycle("ece15"), 25.0).rows
+        };
+        let (none, small) = (rows("0"), rows("1e-6"));
+        let limits = Flags(Flags::FLOW_LIMITED.0 | Flags::NOT_CONVERGED.0);
+        assert!(none.iter().all(|row| !row.flags.any(limits)));
+        let fuel = |rows: &[Row]| rows.iter().map(|row| row.fuel_kg_s * row.dt_s).sum::<f64>();
+        let moved = fuel(&none) / fuel(&small) - 1.0;
+        assert!(moved.abs() < 1e-6, "{circuit:?}: {moved:e}");
+    }
+}

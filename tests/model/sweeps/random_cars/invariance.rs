@@ -6,6 +6,7 @@ use super::traces::{Rows, Write, read, traces};
 use crate::common::{Keep, ZERO, larger};
 use cvtcycle_config::cycle::{Cycle, Trace};
 use cvtcycle_model::drive::{Car, Row, State, simulate};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::NODES;
 use cvtcycle_model::transmission::Transmission;
 use proptest::prelude::*;
@@ -224,6 +225,7 @@ fn sums(rows: &[Row]) -> Vec<f64> {
 /// Units are rounding: a last digit of the speed. The implicit solve leaves 1e-7, so that its path may differ by some of it.
 #[test]
 fn units_of_the_table_do_not_matter() {
+    let unsolved = Cell::new(0);
     hold(
         300,
         &(recipes(0.1), traces(), -40.0..60.0),
@@ -239,22 +241,18 @@ fn units_of_the_table_do_not_matter() {
                     State::at(ZERO + ambient),
                     &mut keep,
                 );
-                sums(&keep.rows)
+                keep.rows
             };
             let plain = run(SPEEDS[0], GRADES[0]);
-            // A car whose ratio is at a threshold goes either way by the last bit, and is no case for this test.
-            let nudges: [Write; 2] = [|x| x * (1.0 + 3e-16), |x| x * (1.0 - 3e-16)];
-            for nudged in nudges {
-                let near = run(("speed_kmh", nudged), GRADES[0]);
-                let moved = plain
-                    .iter()
-                    .zip(&near)
-                    .map(|(a, b)| (a - b).abs() / (a.abs() + 1e-3));
-                prop_assume!(moved.fold(0.0, f64::max) < 1e-6);
-            }
+            // A step that is not solved ends wherever the last bit leads, and is flagged. Seen in a car whose pump is short of flow for its pressure, with a
+            // belt near its capacity.
+            let is_solved = |row: &Row| !row.flags.contains(Flags::NOT_CONVERGED);
+            unsolved.set(unsolved.get() + u32::from(!plain.iter().all(is_solved)));
+            prop_assume!(plain.iter().all(is_solved));
+            let plain = sums(&plain);
             for speed in SPEEDS {
                 for grade in GRADES {
-                    let other = run(speed, grade);
+                    let other = sums(&run(speed, grade));
                     for (a, b) in plain.iter().zip(&other) {
                         let scale = a.abs() + 1e-3 * plain[2].min(1.0);
                         prop_assert!(
@@ -271,4 +269,6 @@ fn units_of_the_table_do_not_matter() {
             Ok(())
         },
     );
+    println!("drives with a step that is not solved: {}", unsolved.get());
+    assert!(unsolved.get() <= 3, "{}", unsolved.get());
 }

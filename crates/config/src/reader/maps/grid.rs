@@ -30,7 +30,7 @@ pub(super) struct Rules {
 pub(super) struct Rows {
     /// Indices of its columns in the schema.
     pub columns: Vec<usize>,
-    /// Its rows in the columns' own units, each with its line.
+    /// Rows in the units of the columns, each with its line in the file.
     pub rows: Vec<(usize, Vec<f64>)>,
     /// How it was read, in words, where it is not written as the program's own are.
     pub read_as: Option<String>,

@@ -96,7 +96,7 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
     Ok(list.collect())
 }
 
-/// What the coefficients of the road load are taken for without an answer, and why.
+/// Names the procedure that road load coefficients are assumed to be from without an answer, and the reason.
 #[must_use]
 pub fn road_load_default(answers: &Answers) -> String {
     match has_lbf(answers) {
@@ -105,7 +105,7 @@ pub fn road_load_default(answers: &Answers) -> String {
     }
 }
 
-/// What was taken for the coefficients of the road load, where nothing was said of them.
+/// Names the assumed procedure of the road load coefficients for the car's file; `None` if an answer named it, or there are none.
 pub(super) fn road_load_note(answers: &Answers) -> Option<String> {
     let has = |name: &str| answers.numbers.contains_key(name);
     if has("road-load") || !["f0", "f1", "f2"].iter().any(|name| has(name)) {

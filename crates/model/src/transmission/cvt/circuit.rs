@@ -79,12 +79,13 @@ impl<R: Real> Cvt<R> {
         }
     }
 
-    /// Line pressure over that of the secondary at a pressure of it, where they are not the same.
-    pub(super) fn line_factor(&self, secondary_pa: R, primary_pa: R) -> Option<R> {
+    /// Line pressure less that of the secondary, Pa; `None` in a circuit where both are the same. A difference and no ratio: the secondary may be
+    /// without pressure while the primary has some.
+    pub(super) fn line_above_pa(&self, secondary_pa: R, primary_pa: R) -> Option<R> {
         match self.circuit {
             LineCircuit::LineIsSecondary => None,
             LineCircuit::Independent | LineCircuit::TorqueSensor { .. } => {
-                Some(self.line_pa(secondary_pa, primary_pa) / secondary_pa)
+                Some(self.line_pa(secondary_pa, primary_pa) - secondary_pa)
             }
         }
     }

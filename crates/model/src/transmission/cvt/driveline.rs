@@ -623,21 +623,22 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// Computes the pressure that the circuit reaches of the one that the clamp law sets, Pa, with a flow into the pulleys; the clamp is fed before
-    /// it, or not (PU-6, PU-7). A pump that is a measured map has no flow: it reaches any pressure. `line` is the pressure of the line over that
-    /// of the secondary, if they differ.
+    /// it, or not (PU-6, PU-7). A pump that is a measured map has no flow: it reaches any pressure. `above_pa` is the pressure of the line
+    /// less that of the secondary, if they differ: less of the line leaves less for the secondary, and no less than none.
     pub fn circuit(
         &self,
         set_pa: R,
-        line: Option<R>,
+        above_pa: Option<R>,
         pump: &TurningPump<R>,
         shift: (R, bool),
     ) -> Circuit<R> {
-        let Some(factor) = line else {
+        let Some(above_pa) = above_pa else {
             return self.line_circuit(set_pa, pump, shift);
         };
-        let circuit = self.line_circuit(set_pa * factor, pump, shift);
+        let circuit = self.line_circuit(set_pa + above_pa, pump, shift);
         Circuit {
-            pressure_pa: (circuit.limited).select(circuit.pressure_pa / factor, set_pa),
+            pressure_pa: (circuit.limited)
+                .select((circuit.pressure_pa - above_pa).max(0.0), set_pa),
             ..circuit
         }
     }

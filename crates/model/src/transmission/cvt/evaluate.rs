@@ -395,8 +395,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             chain.secondary_rad_s,
         );
         let shift = (self.shift_flow_m3_s, self.clamp_first);
-        let line_factor = cvt.line_factor(g.pressure_pa, primary_pa);
-        let circuit = line.circuit(set_pa, line_factor, &next_pump, shift);
+        let line_above_pa = cvt.line_above_pa(g.pressure_pa, primary_pa);
+        let circuit = line.circuit(set_pa, line_above_pa, &next_pump, shift);
         point.guess = Guess {
             engine_rad_s,
             slip: chain.slip,

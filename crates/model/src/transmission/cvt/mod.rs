@@ -298,7 +298,7 @@ impl<R: Real> Cvt<R> {
         step: &Step,
         running_s: f64,
     ) -> R {
-        if step.motion.speed_m_s > 0.0 {
+        if !step.motion.rests() {
             return self.selector.neutral_after_s.splat(0.0);
         }
         self.selector.neutral_share(&SelectorSignals {

@@ -1,8 +1,9 @@
 //! The flow that a shift may take: the largest that the pump has left once the clamp that this shift needs is fed (RC-5, PU-7).
 //!
-//! What is left falls with the flow that the shift takes, for a faster shift needs more pressure (PC-5). So a step is solved for the shift that
-//! the controller demands, and where the pump has less, again for others between none and that one: by secant and false position (Illinois),
-//! then by halves, since what is left may jump where the primary has the pressure of no shift. Few steps need it; each run has its own search.
+//! The flow left for the shift falls with the flow that the shift takes, for a faster shift needs more pressure (PC-5). So a step is solved for the
+//! shift that the controller demands, and where the pump has less, again for others between none and that one: by secant and false position
+//! (Illinois), then by halves, since the flow left may jump where the primary has the pressure of no shift. Few steps need it; each run has its own
+//! search.
 
 use super::evaluate::{Point, Step};
 use crate::math::{Mask, Real, physics};

@@ -75,8 +75,8 @@ fn idling<P: PrimeMover<R>, R: Real>(
         (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
         let shift = (step.shift_flow_m3_s, step.clamp_first);
         let primary_pa = idle_primary_pa(step, &load, set_pa);
-        let line_factor = cvt.line_factor(set_pa, primary_pa);
-        let circuit = line.circuit(set_pa, line_factor, &shaft.pump, shift);
+        let line_above_pa = cvt.line_above_pa(set_pa, primary_pa);
+        let circuit = line.circuit(set_pa, line_above_pa, &shaft.pump, shift);
         (at.pressure_pa, at.flow_limited) = (circuit.pressure_pa, circuit.limited);
         at.primary_pa = idle_primary_pa(step, &load, at.pressure_pa);
         let pump = line.turn_engine(

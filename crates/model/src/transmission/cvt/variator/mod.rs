@@ -217,10 +217,10 @@ impl BeltState {
     }
 }
 
-/// Torque capacity at the secondary for the forces of both pulleys, N, and a friction, Nm (VA-2, VA-4).
+/// Torque capacity at the secondary, Nm, for the clamping forces of both pulleys and a friction (VA-2, VA-4).
 #[physics]
-fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, clamp_n: (R, R), friction: R) -> R {
-    let weaker = clamp_n.0.min(clamp_n.1);
+fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, tension: &Tension<R>, friction: R) -> R {
+    let weaker = tension.primary_clamp_n.min(tension.secondary_clamp_n);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
@@ -256,7 +256,7 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(
             at,
-            (tension.primary_clamp_n, tension.secondary_clamp_n),
+            &tension,
             belt.formulation
                 .capacity_friction(mu_segment, load.capacity_friction),
         ),

@@ -258,11 +258,7 @@ fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
     let bare = without_slip(belt, at, load, &tension, band_nm, &deflection);
     let bare = BeltPoint {
-        capacity_nm: capacity_nm(
-            at,
-            (tension.primary_clamp_n, tension.secondary_clamp_n),
-            load.segment_friction,
-        ),
+        capacity_nm: capacity_nm(at, &tension, load.segment_friction),
         ..bare
     };
     let Some(slip) = printed::slip(&Contact::new(belt, at, &tension, load.segment_friction)) else {
