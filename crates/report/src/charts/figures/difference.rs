@@ -168,6 +168,9 @@ pub fn difference_bars(data: &EnergyDifference) -> Picture {
         .picture(table)
 }
 
+/// Share from which a part is most of a whole.
+const MOST: f64 = 0.5;
+
 /// Title: fuel that B burns more or less, and the largest part of it.
 fn title_of(data: &EnergyDifference) -> String {
     let fuel = finite(data.fuel_kj[1]) - finite(data.fuel_kj[0]);
@@ -180,8 +183,13 @@ fn title_of(data: &EnergyDifference) -> String {
         .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
     let largest = largest.map_or_else(String::new, |term| {
         let change = term.change();
+        // Parts of both signs add up: one may be larger than the whole.
+        let word = match change / fuel > MOST {
+            true => "most of it",
+            false => "the largest part",
+        };
         format!(
-            ", most of it {} ({})",
+            ", {word} {} ({})",
             term.name.to_lowercase(),
             signed(energy(change), change)
         )

@@ -192,6 +192,9 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
         .picture(table(&cars))
 }
 
+/// Share from which a part is most of a whole.
+const MOST: f64 = 0.5;
+
 /// Title: losses of each car, and the largest group of the first one.
 fn title(cars: &[Binned]) -> String {
     let some = |car: &&Binned| car.total_j() > 0.0;
@@ -205,8 +208,12 @@ fn title(cars: &[Binned]) -> String {
         .collect();
     match (first.largest_group(), others.is_empty()) {
         (Some((group, joule)), true) => {
+            let word = match joule > MOST * first.total_j() {
+                true => "most of it",
+                false => "the largest part",
+            };
             format!(
-                "{own}, most of it in {} ({})",
+                "{own}, {word} in {} ({})",
                 words(group.name()),
                 kilojoule(joule)
             )
