@@ -13,7 +13,7 @@ use clap::Args;
 use cvtcycle::analysis::answer::{Question, drive, prepare};
 use cvtcycle::analysis::run::{RunQuestion, summary};
 use cvtcycle::config::Problems;
-use cvtcycle::config::setup::{TWIN, is_twin};
+use cvtcycle::config::setup::{TWIN, is_path, is_twin};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::progress::NoProgress;
@@ -123,6 +123,13 @@ impl RunArgs {
             sensitivity: When::Auto.name().to_owned(),
             output: OutputArgs::silent(),
         }
+    }
+
+    /// Path of the cycle's file, where no option says how it is read.
+    fn cycle_file(&self) -> Option<String> {
+        let (word, columns) = (&self.cars.comparison.cycle.word, &self.cars.columns);
+        let is_plain = columns.columns.is_none() && columns.repair.is_none();
+        (is_path(word) && is_plain).then(|| word.clone())
     }
 
     /// Plan of this run for its draws.
@@ -251,6 +258,8 @@ impl Execute for RunArgs {
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
+            let mut inputs = inputs;
+            inputs.cycle.file = self.cycle_file();
             name_run(&mut summary, record.insert(inputs));
         }
         let json = match out.is_some() || self.output.json() {

@@ -123,7 +123,7 @@ fn starts_that_ended_elsewhere_are_named() {
 }
 
 #[test]
-fn a_fit_that_failed_says_why_and_a_bound_alone_does_not_fail() {
+fn a_fit_that_failed_says_why() {
     let mut outcome = named("ordinary");
     let clean = |outcome: &mut Outcome| {
         outcome
@@ -132,10 +132,25 @@ fn a_fit_that_failed_says_why_and_a_bound_alone_does_not_fail() {
             .for_each(|p| p.is_dead = false);
         outcome.residuals.iter_mut().for_each(|r| r.doubtful = 0);
     };
-    assert_eq!(failures(&outcome).len(), 2, "{:?}", failures(&outcome));
+    assert_eq!(failures(&outcome).len(), 3, "{:?}", failures(&outcome));
     clean(&mut outcome);
-    assert!(outcome.parameters.iter().any(|p| p.at_bound.is_some()));
+    let at_bound = failures(&outcome);
+    assert!(
+        at_bound.len() == 1 && at_bound[0].contains("friction.band lies at its high bound"),
+        "{at_bound:?}"
+    );
+    // A coefficient that is found to be 0 is a result.
+    for p in outcome
+        .parameters
+        .iter_mut()
+        .filter(|p| p.at_bound.is_some())
+    {
+        p.value = 0.0;
+    }
     assert!(failures(&outcome).is_empty());
+    outcome.chi2_probability = Some(1e-6);
+    assert!(failures(&outcome)[0].contains("the model does not fit these data"));
+    outcome.chi2_probability = Some(0.3);
     (outcome.converged, outcome.end) = (false, "out of evaluations".to_owned());
     assert!(failures(&outcome)[0].contains("out of evaluations"));
     assert!(printed(&outcome).contains("not converged"));

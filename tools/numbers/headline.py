@@ -169,7 +169,7 @@ PICKS += [
             lambda row: (
                 row["output"] == "subject_excess_percent"
                 and row["samples"] == "16"
-                and row["factor"] in ("gear set", "efficiency over load", "hot friction")
+                and row["factor"] in ("gear set", "engine efficiency over load", "hot engine friction")
             ),
         ),
     ),

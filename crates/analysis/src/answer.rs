@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use crate::levers::{
     Combine, Lever, LeverAnswer, LeverFile, LeverNotes, LeverRequest, OtherCar, OtherKind,
-    lever_answer, prepare as prepare_levers,
+    failed_checks, lever_answer, prepare as prepare_levers,
 };
 use cvtcycle_config::setup::{
     Kind, NamedBy, Options, Setup, TWIN, baseline_of, is_twin, load, name_of,
@@ -436,12 +436,6 @@ fn failures(table: &StudyTable, cars: [usize; 2]) -> Result<Vec<(String, u64)>, 
     }
     counts.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
     Ok(counts)
-}
-
-/// Names of the checks in the reason of a failed run: the first word of each part, since what follows differs from run to run.
-pub(crate) fn failed_checks(reason: &str) -> impl Iterator<Item = String> {
-    let all = reason.split("; ");
-    all.filter_map(|one| Some(one.split_whitespace().next()?.to_owned()))
 }
 
 impl PartWriter for Memory<'_> {

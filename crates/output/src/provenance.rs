@@ -38,6 +38,7 @@ pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
         name: cycle.name.clone(),
         title: cycle.title.clone(),
         sha256: cycle_sha256(cycle),
+        file: None,
     }
 }
 

@@ -113,6 +113,9 @@ pub struct CycleRecord {
     pub title: String,
     /// SHA-256 of the traces as they were read.
     pub sha256: String,
+    /// Path of its file, where nothing else says how it was read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
 }
 
 /// A file: its name and SHA-256.

@@ -10,6 +10,7 @@
 //! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
+//! | `computed` | what page 1 says from one sample, where a directory does not hold it |
 //! | `whatif` | interactive page |
 //! | `live_section` | content of an interactive page: levers, states, answers |
 //! | `run_files` | the files of a run, of which a report is made |
@@ -20,6 +21,7 @@
 
 pub mod charts;
 pub mod compare;
+mod computed;
 pub mod cover;
 pub mod document;
 pub mod whatif;
@@ -136,14 +138,12 @@ fn compute(run: &mut RunResults, drives: Drives) -> Result<(), Problems> {
     if run.studies.iter().any(has_levers) {
         return Ok(());
     }
-    match run::study_of_run(run) {
+    match computed::study_of_run(run) {
         Ok(study) => run.answer = drives(&study)?,
-        Err(why) => run
-            .missing
-            .push(format!("options were not computed: {why}")),
+        Err(why) => run.no_answer = Some(why),
     }
     if let Some(answer) = &run.answer {
-        run::merge(&mut run.summary, answer);
+        computed::merge(&mut run.summary, answer);
     }
     Ok(())
 }

@@ -52,6 +52,8 @@ pub struct RunResults {
     pub validation: Option<Value>,
     /// Ranges, options and next test from one sample, where they were computed for the report.
     pub answer: Option<Answer>,
+    /// Why there is no answer, where it was to be computed.
+    pub no_answer: Option<String>,
     /// Sentences on missing parts.
     pub missing: Vec<String>,
 }
@@ -355,6 +357,7 @@ fn run(path: &Path, file: &Path, value: Value, sum: &str) -> Result<RunResults, 
         studies: Vec::new(),
         validation: None,
         answer: None,
+        no_answer: None,
         missing,
     })
 }

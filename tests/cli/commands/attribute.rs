@@ -55,7 +55,7 @@ fn tables_and_files_of_an_attribution() {
     for part in [
         "rover_216_cvt at -10 degC, soak",
         "rover_216_5mt at 25 degC, soak",
-        "The transmission losses cost",
+        "Without its transmission losses it would burn",
         "interaction",
         "Pairs",
         "Shapley",
@@ -86,7 +86,7 @@ fn tables_and_files_of_an_attribution() {
 fn a_run_prints_the_price_of_its_losses() {
     let text = stdout(&run(&["run", "--ambient", "-10"]));
     for part in [
-        "The transmission losses cost",
+        "Without its transmission losses it would burn",
         "fuel saved if the loss were zero",
         "together",
         "interaction",

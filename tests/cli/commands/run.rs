@@ -308,8 +308,11 @@ fn overrides_and_fluids_reach_the_cars_they_are_meant_for() {
             ]
             .concat(),
         );
-        let fuel_of_car = |k: usize| all["runs"][k]["fuel_kg"].clone();
-        (fuel_of_car(0), fuel_of_car(1))
+        let fuel_of = |role: &str| {
+            let mut runs = all["runs"].as_array().unwrap().iter();
+            runs.find(|run| run["role"] == role).unwrap()["fuel_kg"].clone()
+        };
+        (fuel_of("subject"), fuel_of("baseline"))
     };
     let plain = fuel(&[]);
     let subject = |changed: (Value, Value)| changed.0 != plain.0 && changed.1 == plain.1;
@@ -340,7 +343,8 @@ fn a_car_may_be_compared_with_itself() {
         "rover_216_cvt",
     ];
     let summary: Value = serde_json::from_slice(&run(&words).stdout).unwrap();
-    assert_eq!(summary["runs"][1]["vehicle"], "rover_216_cvt_2");
+    assert_eq!(summary["runs"][1]["role"], "unchanged");
+    assert_eq!(summary["runs"][2]["vehicle"], "rover_216_cvt_2");
     assert!(summary["comparison"][0]["fuel_percent"].as_f64().unwrap() < 0.0);
     assert_eq!(summary["settings"]["set"][0], words[3]);
 }

@@ -164,7 +164,7 @@ fn intervals_equal_those_of_the_draws() {
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();
     let text = flat(&stdout(&run(&changed)));
     // Measured cars tell, and few of them in the cold.
-    assert!(text.contains(" % for 90 % of such cars, by "), "{text}");
+    assert!(text.contains("by the model's error on "), "{text}");
     assert!(!text.contains("(no interval)"), "{text}");
     assert!(
         text.contains("gets an interval of its own from --draws 256"),
@@ -351,7 +351,7 @@ fn no_difference_of_an_own_car_is_without_its_range() {
     assert!(levers("0").contains("(without draws no interval)"));
     for samples in ["0", "2"] {
         assert!(
-            levers(samples).contains("for 90 % of such cars, by 65 measured"),
+            levers(samples).contains("by the model's error on 65 measured cars"),
             "{samples}"
         );
     }

@@ -50,7 +50,9 @@ pub fn answer(run: &RunSummary) -> Option<String> {
                 "With {factor} times each transmission loss it burns {whole} % less: {parts}; {tail}."
             )
         }
-        _ => format!("The transmission losses cost {whole} % of that fuel: {parts}; {tail}."),
+        _ => format!(
+            "Without its transmission losses it would burn {whole} % less: {parts}; {tail}."
+        ),
     })
 }
 
@@ -59,12 +61,12 @@ fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
     let points = price.interaction.percent.unwrap_or(0.0);
     let size = fixed(points.abs(), 1);
     if points.abs() < SMALL {
-        return "all at once as much as their sum".to_owned();
+        return "removed together as much as one by one".to_owned();
     }
     let (word, cause) = match (points > 0.0, run.transmission.as_str()) {
         (true, _) => ("more", "without one loss the others grow in colder oil"),
         (false, "cvt") => ("less", "less load lowers the clamping pressure"),
         (false, _) => ("less", "less load makes the others smaller"),
     };
-    format!("all at once {size} points {word}: {cause}")
+    format!("removed together {size} points {word} than one by one, since {cause}")
 }

@@ -14,7 +14,6 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::request::{ColumnNote, LeverNotes};
-use crate::answer::failed_checks;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, ProblemKind};
 use cvtcycle_output::fleet_spread::{FleetRange, fuel_range};
@@ -151,6 +150,8 @@ pub struct SideEffect {
     pub name: &'static str,
     /// Unit of the effect.
     pub unit: &'static str,
+    /// Median of the draws.
+    pub median: f64,
     /// Worst of all draws.
     pub worst: f64,
     /// Worst of the reference.
@@ -170,6 +171,20 @@ pub struct SetBy {
     pub key: String,
     /// Share of the variance of the change (IN-2).
     pub share: f64,
+}
+
+/// What failed of values that do not go together, in the place of the name of a check.
+const IMPOSSIBLE: &str = "impossible_values";
+
+/// Names of the checks in the reason of a failed run: the first word of each part, since what follows differs from run to run. A car that cannot be
+/// driven has a sentence in their place.
+pub(crate) fn failed_checks(reason: &str) -> impl Iterator<Item = String> {
+    let all = reason.split("; ").filter(|one| !one.is_empty());
+    all.map(|one| match one.split_once(' ') {
+        None => one.to_owned(),
+        Some((name, rest)) if rest.starts_with("for ") => name.to_owned(),
+        Some(_) => IMPOSSIBLE.to_owned(),
+    })
 }
 
 impl LeverAnswer {
@@ -461,6 +476,7 @@ fn row(
                 SideEffect {
                     name,
                     unit,
+                    median: median(of[column].iter().copied()),
                     worst: worst(&of[column], *largest),
                     reference_worst: worst(&of[reference], *largest),
                     change: quantile_of_sorted(&changes, 0.5),

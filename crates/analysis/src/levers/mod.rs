@@ -20,6 +20,7 @@ mod request;
 mod tables;
 mod words;
 
+pub(crate) use answer::failed_checks;
 pub use answer::{Between, LeverAnswer, LeverBlock, LeverRow, SetBy, SideEffect, lever_answer};
 pub use combine::{COMBINE, Combine};
 pub use prepare::prepare;

@@ -98,13 +98,13 @@ fn assess_draws(
     known: Option<&[ValidationRow]>,
 ) {
     let usual = summary.settings.dt_s >= 1.0 && summary.settings.formulation == "smooth";
-    let is_changed = summary.runs.iter().any(|run| run.role == UNCHANGED);
-    let names = driven.iter().map(|car| car.name);
+    let named = driven.iter().zip(&summary.runs);
+    let names = named.filter(|(_, run)| run.role != UNCHANGED);
+    let names = names.map(|(car, _)| car.name);
     let StartWord::Word(start) = summary.start.clone() else {
         return;
     };
     if !usual
-        || is_changed
         || !names
             .clone()
             .all(|name| Kind::Vehicle.names().contains(&name))

@@ -14,11 +14,15 @@ use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
 use cvtcycle_analysis::words::{decimals, of_cars};
 use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary, UNCHANGED};
 use cvtcycle_study::answer::{Information, KnownFactor};
+use cvtcycle_study::execute::side_effects::FLOOR;
 
 /// Maximum number of levers on page 1, and among the decisions.
 const OPTIONS: (usize, usize) = (6, 2);
 /// Minimum change of the minimum clamp safety that is mentioned.
 const SAFETY: f64 = 0.05;
+
+/// Minimum time in which a floor decides the pressure that is mentioned, s.
+const FLOOR_S: f64 = 60.0;
 
 /// Minimum share of the variance of a change that is mentioned.
 const SIZE: f64 = 0.2;
@@ -37,7 +41,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     let best = options
         .as_ref()
         .and_then(|(answer, block)| best(answer, block));
-    let lead = [Some(lead(summary, cycle)), best].into_iter().flatten();
+    let contradicted = (!summary.contradicted.is_empty())
+        .then(|| "A published number contradicts the model, see below.".to_owned());
+    let lead = [Some(lead(summary, cycle)), contradicted, best];
+    let lead = lead.into_iter().flatten();
     section
         .blocks
         .push(Block::Lead(lead.collect::<Vec<_>>().join(" ")));
@@ -152,7 +159,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         let digits = decimals([low, high]);
         let [low, high] = [low, high].map(|x| grouped(x, digits));
         Some(format!(
-            " ({low} to {high} in 90 % of the runs with uncertain values varied)"
+            " ({low} to {high} in 90 % of the runs with uncertain inputs varied)"
         ))
     };
     let range = subject.fleet.as_ref().map(of_cars).or_else(drawn);
@@ -187,7 +194,7 @@ fn difference(comparison: &Comparison, baseline: &RunSummary, percent: f64) -> S
     let known = match &comparison.interval {
         Some(drawn) => match drawn.ends() {
             Some(ends) => format!(
-                "with all uncertain values varied, 90 % of {} runs give {}",
+                "with the uncertain inputs varied 90 % of {} runs give {}, the error of the model not included",
                 drawn.draws,
                 level(ends)
             ),
@@ -198,9 +205,9 @@ fn difference(comparison: &Comparison, baseline: &RunSummary, percent: f64) -> S
         },
         None => match &comparison.fleet {
             Some(range) => format!(
-                "of such cars, by {} measured, 90 % have {}",
-                range.cars,
-                level(range.ends)
+                "90 % range {}, by the model's error on {} measured cars",
+                level(range.ends),
+                range.cars
             ),
             None => "how sure that is, no measured cars tell".to_owned(),
         },
@@ -220,13 +227,18 @@ fn likeness(comparison: &Comparison) -> &'static str {
 fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     let row = single(block).next()?;
     let (name, saved) = (&row.of.title, -row.fuel_percent.value);
+    // A second one that may save as much has a claim to be looked at.
+    let rival = block.between.first().filter(|of| of.percent[2] > 0.0);
+    let rival = rival.map_or_else(String::new, |of| {
+        format!(" Whether {} saves as much is open.", of.titles[1])
+    });
     let ends = [-row.high_percent.value, -row.low_percent.value];
     Some(match answer.plan {
         Some(_) => {
             let digits = decimals(ends);
             let [low, high] = ends.map(|x| grouped(x, digits));
             format!(
-                "Best single change: {name}, which saves {} % ({low} to {high} %).",
+                "Best single change: {name}, which saves {} % ({low} to {high} %).{rival}",
                 grouped(saved, digits)
             )
         }
@@ -308,9 +320,14 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     list.extend(doubts::cold(cars.get(..1).unwrap_or_default()));
     list.extend(found.validation.as_ref().map(validation::differing));
     let block = options.iter().map(|(_, block)| block);
-    list.extend(block.flat_map(asked).filter_map(risk));
+    let duration_s = cars.first().map_or(f64::NAN, |car| car.run.duration_s);
+    list.extend(
+        block
+            .flat_map(asked)
+            .filter_map(|row| risk(row, duration_s)),
+    );
     if list.is_empty() {
-        list.push("No validation is in this report, and no lever.".to_owned());
+        list.push("The model was not compared with measurements in this report, and no change of the design was driven.".to_owned());
     }
     list
 }
@@ -324,7 +341,7 @@ fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
 
 /// Risk of a change: draws in which it fails, safety against belt slip of the same draw, the value that its size depends on, and parts to be
 /// built or proven.
-fn risk(row: &LeverRow) -> Option<String> {
+fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let fails = (row.failed > 0).then(|| {
         let (failed, all) = (row.failed, row.failed + row.n);
         let names: Vec<&str> = row.reasons.iter().map(|(name, _)| name.as_str()).collect();
@@ -338,16 +355,24 @@ fn risk(row: &LeverRow) -> Option<String> {
     let falls = falls.map(|own| {
         let ratio = |x: f64| Quantity::Ratio.text(Some(x));
         format!(
-            "the least clamping safety falls by {} in the same run (median), in the worst run to {}, where the car as it is has {}",
-            ratio(-own.change),
+            "lowest clamping safety in any run {} with it, {} without (below 1 the belt slips); {} lower in the same run (median)",
             ratio(own.worst),
-            ratio(own.reference_worst)
+            ratio(own.reference_worst),
+            ratio(-own.change)
+        )
+    });
+    let floor = row.effect(FLOOR).filter(|own| own.median > FLOOR_S);
+    let floor = floor.map(|own| {
+        format!(
+            "for {} of {} the least pressure that the hydraulics need sets the clamp: a lower demand saves no more there",
+            Quantity::Seconds.text(own.median),
+            Quantity::Seconds.text(duration_s)
         )
     });
     let size = row.set_by.as_ref().filter(|of| of.share >= SIZE);
     let size = size.map(|of| {
         format!(
-            "its size depends most on {}, {} % of its variance",
+            "the size of the saving is uncertain mostly because of {} ({} % of its variance)",
             of.factor,
             grouped(100.0 * of.share.min(1.0), 0)
         )
@@ -357,7 +382,10 @@ fn risk(row: &LeverRow) -> Option<String> {
         false => row.of.needs.trim_end_matches('.'),
     };
     let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
-    let both: Vec<String> = [fails, falls, size, needs].into_iter().flatten().collect();
+    let both: Vec<String> = [fails, falls, floor, size, needs]
+        .into_iter()
+        .flatten()
+        .collect();
     let title = capital_first(&lever_title(row));
     (!both.is_empty()).then(|| format!("{title}: {}.", both.join("; ")))
 }
@@ -380,7 +408,15 @@ fn test_of(information: &Information, summary: &Summary) -> Option<(String, Stri
         true => ("fuel difference", "percentage points"),
         false => ("fuel", "L/100 km"),
     };
-    Some(test_words(information, best, of))
+    let (text, test) = test_words(information, best, of);
+    let by_cars = summary.comparison.iter().any(|of| of.fleet.is_some());
+    let text = match by_cars {
+        true => {
+            text + " That is the part of the inputs: the error of the model stays, which a measurement of this car would show."
+        }
+        false => text,
+    };
+    Some((text, test))
 }
 
 /// Next test: the reduction of the spread by knowing a value, and the test in a few words.
@@ -420,4 +456,60 @@ fn decisions(options: &Options, test: Option<String>) -> Vec<String> {
     list.push("Reviewed ________________".to_owned());
     list.push("Date ____________________".to_owned());
     list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cvtcycle_analysis::levers::SideEffect;
+    use cvtcycle_study::statistics::{Quantile, Share};
+
+    /// A lever with the clamping safety of its worst draw, of the worst draw of the car as it is, and the median of its change.
+    fn lever(worst: f64, reference_worst: f64, change: f64) -> LeverRow {
+        let note = serde_json::json!({
+            "vehicle": "car", "ambient_degc": -7.0, "kind": "lever", "name": "pump", "title": "variable pump", "reference": 0,
+            "needs": "control of displacement"
+        });
+        let quantile = Quantile {
+            p: 0.5,
+            value: -1.0,
+            interval: [None; 2],
+        };
+        LeverRow {
+            of: serde_json::from_value(note).unwrap(),
+            n: 256,
+            failed: 0,
+            reasons: Vec::new(),
+            fuel_percent: quantile,
+            low_percent: quantile,
+            high_percent: quantile,
+            saves: Share::new(&[-1.0], None, |x| x < 0.0),
+            fuel_l_per_100km: -0.1,
+            co2_g_per_km: -2.0,
+            sum_percent: None,
+            set_by: None,
+            effects: vec![SideEffect {
+                name: "min_clamp_safety",
+                unit: "-",
+                median: worst + 0.2,
+                worst,
+                reference_worst,
+                change,
+                change_ends: [change; 2],
+            }],
+        }
+    }
+
+    /// A lever whose worst draw is better than that of the car as it is has no risk of safety, whatever the car has with its nominal values: a
+    /// variable pump on a Civic was said to lower the safety from the nominal 1.27 to 1.01, where the worst draw of the car has 1.001.
+    #[test]
+    fn safety_is_compared_draw_by_draw() {
+        let raised = risk(&lever(1.01, 1.001, 0.02), 1874.0).unwrap();
+        assert_eq!(raised, "Variable pump: it needs control of displacement.");
+        let lowered = risk(&lever(1.05, 1.38, -0.67), 1874.0).unwrap();
+        assert!(
+            lowered.contains("lowest clamping safety in any run 1.05 with it, 1.38 without (below 1 the belt slips); 0.67 lower in the same run"),
+            "{lowered}"
+        );
+    }
 }

@@ -1,7 +1,7 @@
 //! Conditions: cycle, ambient, cars, fluids, and values that differ from the shipped files.
 
 use super::super::document::{ReportTable, Section};
-use super::super::number::{NONE, Quantity, degc, sign, words};
+use super::super::number::{NONE, Quantity, degc, sign};
 use super::super::results::RunResults;
 use super::{Car, cycle_title, start_line};
 use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
@@ -42,10 +42,12 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     }
     section.facts(facts);
     section.table(table(cars));
-    let controllers = cars
-        .iter()
-        .filter_map(|car| controller(car.record?, car.run.label()));
-    section.facts(controllers.collect());
+    for car in cars {
+        let table = car
+            .record
+            .and_then(|record| controller(record, car.run.label()));
+        table.into_iter().for_each(|table| section.folded(table));
+    }
     for car in cars {
         for note in &car.run.notes {
             section.text(format!("{}: {note}.", car.run.label()));
@@ -85,23 +87,30 @@ fn table(cars: &[Car]) -> ReportTable {
     table
 }
 
-/// Controller of a CVT: its clamp law and ratio control.
-fn controller(record: &CarRecord, name: &str) -> Option<(String, String)> {
-    const RATIO: &str = "transmission.cvt.ratio.";
-    let mut values = record.values.iter();
-    let law = values.find(|value| value.key == "transmission.cvt.clamp")?;
-    let part = |value: &ValueRecord| {
-        let name = value.key.strip_prefix(RATIO)?.trim_end_matches("_rpm");
-        let name = words(name.trim_end_matches("_per_s"));
-        Some(match value.unit.as_str() {
-            "-" => format!("{name} {}", value.value),
-            unit => format!("{name} {}\u{a0}{}", value.value, sign(unit)),
-        })
-    };
-    let parts: Vec<String> = record.values.iter().filter_map(part).collect();
-    let (law, ratio) = (words(&law.value), parts.join(", "));
-    let name = format!("Controller of {name}");
-    Some((name, format!("clamp law {law}; ratio: {ratio}")))
+/// Controller of a CVT: its clamp law and ratio control, without what is not given.
+fn controller(record: &CarRecord, name: &str) -> Option<ReportTable> {
+    const TABLES: [&str; 2] = ["transmission.cvt.clamp", "transmission.cvt.ratio"];
+    let caption = format!("Controller of {name}");
+    let mut table = ReportTable::textual(&caption, &["Key", "Value", "Meaning", "Status"]);
+    let is_own = |value: &&ValueRecord| TABLES.iter().any(|table| value.key.starts_with(table));
+    let is_given = |value: &&ValueRecord| !["", "[]"].contains(&value.value.as_str());
+    let values = record.values.iter().filter(is_own).filter(is_given);
+    let mut count = 0;
+    for value in values {
+        let key = value.key.trim_start_matches("transmission.cvt.");
+        let number = match value.unit.as_str() {
+            "-" | "" => value.value.clone(),
+            unit => format!("{}\u{a0}{}", value.value, sign(unit)),
+        };
+        table.row([
+            key.to_owned(),
+            number,
+            value.doc.clone(),
+            value.status.clone(),
+        ]);
+        count += 1;
+    }
+    (count > 0).then_some(table)
 }
 
 fn changes(section: &mut Section, car: &Car, record: &CarRecord) {

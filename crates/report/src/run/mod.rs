@@ -1,7 +1,6 @@
 //! The report of a run: results first, then details.
 
 mod answer;
-mod computed;
 mod conditions;
 mod doubts;
 mod energy;
@@ -21,7 +20,6 @@ use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::{Comparison, RunSummary, StartWord, Summary};
 
 pub(crate) use answer::{brief, strip};
-pub(crate) use computed::{merge, study_of_run};
 pub(super) use conditions::change_table;
 pub(crate) use energy::per_km;
 pub use reproduce::hashes;

@@ -96,7 +96,7 @@ fn scene(
         dt_s: settings.dt_s,
         formulation: settings.formulation.clone(),
         state: State {
-            cycle: summary.cycle.clone(),
+            cycle: (record.cycle.file.clone()).unwrap_or_else(|| summary.cycle.clone()),
             ambient_degc: summary.ambient_degc,
             ..State::default()
         },
@@ -114,7 +114,10 @@ fn scene(
         return Err(changed(&format!("car {}", subject.name), hint));
     }
     let cycle = cycle::find(&scene.state.cycle);
-    let same = |found: cycle::Cycle| cycle_sha256(&found) == record.cycle.sha256;
+    let same = |found: cycle::Cycle| {
+        let found = cycle::for_car(&scene.state.cycle, found, &driven);
+        cycle_sha256(&found) == record.cycle.sha256
+    };
     match cycle.is_ok_and(same) {
         true => Ok(scene),
         false => Err(changed(&format!("cycle {}", summary.cycle), hint)),

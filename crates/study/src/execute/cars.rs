@@ -89,6 +89,8 @@ pub struct StudyCar {
     /// Range that values are clamped to, by factor, where the plan says so.
     held: Vec<Option<Bound>>,
     options: Options,
+    /// The car without words, where it has been read.
+    read: Option<ParamSet>,
     variants: Vec<OnceLock<Result<CarVariant, Problems>>>,
 }
 
@@ -119,6 +121,7 @@ impl StudyCar {
             then: vec![Vec::new(); plan.factors.len()],
             held: held(plan),
             options,
+            read: None,
             variants: Vec::new(),
         };
         car.bound(plan, subject, &[])
@@ -155,6 +158,7 @@ impl StudyCar {
             then,
             held: held(plan),
             options,
+            read: None,
             variants: Vec::new(),
         };
         car.bound(plan, column.is_subject, &column.left_out)
@@ -166,6 +170,7 @@ impl StudyCar {
             true => Some(ParamSet::load(&self.word, &self.options)?),
             false => None,
         };
+        self.read.clone_from(&own);
         let is_cvt = |own: &ParamSet| own.vehicle().transmission().is_cvt();
         let by_box = plan.by_box.zip(own.as_ref().map(is_cvt));
         let subject = by_box.map_or(subject, |(of, is_cvt)| of == is_cvt);
@@ -273,8 +278,10 @@ impl StudyCar {
     }
 
     fn make(&self, index: usize, factors: &[Factor]) -> Result<CarVariant, Problems> {
-        let options = self.options_of(index, factors)?;
-        let base = ParamSet::load(&self.word, &options)?;
+        let base = match (index, &self.read) {
+            (0, Some(read)) => read.clone(),
+            _ => ParamSet::load(&self.word, &self.options_of(index, factors)?)?,
+        };
         let mut variant = CarVariant {
             setup: base.setup(),
             base,

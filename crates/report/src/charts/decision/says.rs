@@ -34,8 +34,8 @@ pub(super) fn strip(
         }
         Some(ends) => {
             let among = match is_by_cars {
-                true => "90 % of such cars have",
-                false => "with uncertain values varied",
+                true => "by the model's error on measured cars",
+                false => "with uncertain inputs varied",
             };
             format!("{subject} uses {compared}; {among} {}", level(ends))
         }

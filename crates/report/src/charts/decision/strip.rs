@@ -60,7 +60,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
         let middle = |x: f64| at(x, row_middle(k));
         if let Some([low, median, high]) = row.drawn {
             let has_median = !row.is_by_cars;
-            let style = Style::edged(Fill::car(0), 0.5).row(k);
+            let style = Style::edged(Fill::car(usize::from(row.is_by_cars)), 0.5).row(k);
             panel.bar(k, (low, high), (-HALF, HALF), style);
             if has_median {
                 panel.symbol(
@@ -101,11 +101,9 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
             .any(|row| row.drawn.is_some() && row.is_by_cars == by_cars)
     };
     let varied = match (has(false), has(true)) {
-        (true, false) => "; bar: 90 % of the runs with all uncertain values varied",
-        (false, true) => "; bar: 90 % of such cars, by measured ones",
-        (true, true) => {
-            "; bar: 90 % of the runs with all uncertain values varied, or of such cars, by measured ones"
-        }
+        (true, false) => "; bar: 90 %, uncertain inputs only",
+        (false, true) => "; bar: 90 %, by the model's error on measured cars",
+        (true, true) => "; bars: two kinds of 90 % range",
         (false, false) => "",
     };
     Chart::new(
@@ -144,10 +142,13 @@ fn legend(rows: &[Against]) -> Vec<Entry> {
             .any(|row| row.drawn.is_some() && row.is_by_cars == by_cars)
     };
     if drawn(true) {
-        list.push(Entry::fill(Fill::car(0), "90 % of such cars"));
+        list.push(Entry::fill(
+            Fill::car(1),
+            "error of the model on measured cars",
+        ));
     }
     if drawn(false) {
-        list.push(Entry::fill(Fill::car(0), "90 % of these runs"));
+        list.push(Entry::fill(Fill::car(0), "uncertain inputs only"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
@@ -158,7 +159,7 @@ fn legend(rows: &[Against]) -> Vec<Entry> {
         list.push(Entry::symbol(
             Symbol::DIAMOND,
             Symbol::white(PUBLISHED),
-            "published, contradicts",
+            "published, other sign or far off",
         ));
     }
     list
