@@ -4,7 +4,7 @@
 
 use std::io::Write;
 
-use cvtcycle::analysis::words::intervals::file;
+use cvtcycle::analysis::known::file;
 use cvtcycle::config::render;
 
 fn main() -> std::process::ExitCode {

@@ -142,7 +142,7 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
         false => signed(run.difference_percent, 2),
     });
     if runs.iter().any(|run| run.drawn.is_some()) {
-        add("90 % of varied runs", "", &|run| {
+        add("90 %, uncertain inputs", "", &|run| {
             let drawn = run.drawn.as_ref();
             drawn.map_or_else(String::new, |drawn| match drawn.ends() {
                 Some(ends) => between(ends, "%"),
@@ -161,7 +161,7 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
         });
     }
     if runs.iter().any(|run| run.fleet.is_some()) {
-        add("90 % of such cars", "", &|run| {
+        add("90 %, error of the model", "", &|run| {
             let range = run.fleet.as_ref();
             range.map_or_else(String::new, |range| between(range.ends, "%"))
         });

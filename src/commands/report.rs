@@ -47,7 +47,7 @@ const RUN_OPTIONS: [&str; 13] = [
     }),
     after_help = "\
 Examples:
-  cvtcycle report --vehicle mycar.toml --cycle wltc --ambient -7
+  cvtcycle report --vehicle civic_20_cvt --cycle wltc --ambient -7
   cvtcycle run --ambient -10 --out cold
   cvtcycle report cold
   cvtcycle run --ambient -10 --set transmission.cvt.belt.band_offset_mm=2 --out offset_2mm
@@ -63,8 +63,8 @@ of `validate --out` in folders of DIR are included. Exit code 1: the report was 
 a part of a study); 2: bad input."
 )]
 pub struct ReportArgs {
-    /// Directory written by `run --out` or `study --out`; with two runs, B is compared with A
-    #[arg(value_name = "DIR", num_args = 0..=2)]
+    /// Directory written by `run --out` or `study --out`; of several runs, 2 to 20, each is compared with the first
+    #[arg(value_name = "DIR", num_args = 0..=20)]
     dirs: Vec<PathBuf>,
     #[command(flatten)]
     cars: ComparedArgs,
@@ -99,8 +99,8 @@ impl ReportArgs {
     fn check_live(&self, form: Form, problems: &mut Problems) -> bool {
         let refused = match (&self.dirs[..], form) {
             (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
-            ([_, _], _) => Some((
-                "two runs cannot be driven again on one page",
+            ([_, _, ..], _) => Some((
+                "several runs cannot be driven again on one page",
                 "make the report of one of them",
             )),
             _ => None,

@@ -33,8 +33,8 @@ use cvtcycle_study::statistics::{Confidence, Share, Summary};
 use cvtcycle_study::store::{Rows, Values};
 use cvtcycle_study::{StudyManifest, StudyTable, TableSource};
 
-/// The plan that is drawn.
-pub const PLAN: &str = "uncertainty_rover";
+pub use crate::words::intervals::PLAN;
+
 /// Version of an [`Answer`] as JSON.
 pub const SCHEMA: u32 = 1;
 /// Draws of an answer: with 256 the ends of 90 % have intervals of their own (ES-3), and a failure in 1 % of all cases is seen.

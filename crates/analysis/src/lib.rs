@@ -7,6 +7,7 @@
 //! | `answer` | every range of a car's answer from one sample of what is uncertain of it |
 //! | `levers` | changes of a design, each next to the car as it is, with the same draws |
 //! | `accelerate` | full-throttle times: from one speed to another, over a distance, with the limit of grip |
+//! | `known` | the intervals that the program carries, drawn again |
 //! | `label` | figures of a fuel label, from the car's own tests |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `words` | results in sentences, with what is known of how sure they are and which published number they contradict |
@@ -16,6 +17,7 @@
 pub mod accelerate;
 pub mod answer;
 pub mod attribute;
+pub mod known;
 pub mod label;
 pub mod optimum;
 pub mod levers;

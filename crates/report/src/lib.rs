@@ -102,10 +102,10 @@ pub fn report_with(
     if !problems.is_empty() {
         return Err(problems);
     }
-    if let ([_, other], [first, ..]) = (dirs, with) {
+    if let ([_, other, ..], [first, ..]) = (dirs, with) {
         let hint = "leave it out, or make the report of one run";
         let message = format!(
-            "a study can be added to the report of one run, not of two: {} is the second one",
+            "a study can be added to the report of one run, not of several: {} is the second one",
             other.display()
         );
         return Err(problem(first, &message, hint).into());
@@ -117,10 +117,13 @@ pub fn report_with(
         [ResultDir::Run(run)] => run::document(run)?,
         [ResultDir::Study(study)] => study::document(study)?,
         [ResultDir::Run(a), ResultDir::Run(b)] => compare::document(a, b)?,
+        runs if runs.len() > 2 && runs.iter().all(|run| matches!(run, ResultDir::Run(_))) => {
+            compare::side_by_side::document(&compare::compare(dirs, 0, false)?)
+        }
         _ => {
             let hint =
-                "two directories are compared if both are runs; add a study to the report of a run";
-            let message = "these are not two runs";
+                "directories are compared if all are runs; add a study to the report of a run";
+            let message = "these are not all runs";
             let problem = problem(&dirs[dirs.len() - 1], message, hint);
             return Err(problem.settings(&[Setting::Added]).into());
         }

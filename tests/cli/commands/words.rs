@@ -2,7 +2,8 @@
 
 use super::*;
 use cvtcycle::analysis::answer::{Question, prepare};
-use cvtcycle::analysis::words::intervals::{CASES, draw, line};
+use cvtcycle::analysis::known::draw;
+use cvtcycle::analysis::words::intervals::{CASES, line};
 use cvtcycle::config::Override;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::validate::{COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read};
@@ -164,7 +165,7 @@ fn intervals_equal_those_of_the_draws() {
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();
     let text = flat(&stdout(&run(&changed)));
     // Measured cars tell, and few of them in the cold.
-    assert!(text.contains("by the model's error on "), "{text}");
+    assert!(text.contains("by the error of the model on "), "{text}");
     assert!(!text.contains("(no interval)"), "{text}");
     assert!(
         text.contains("gets an interval of its own from --draws 256"),
@@ -323,14 +324,13 @@ fn no_difference_of_an_own_car_is_without_its_range() {
         assert!(found.len() >= *least, "{name}: {text}");
         for near in found {
             // Of draws, the next sentence has that of measured cars.
-            let is_draws =
-                near.starts_with("The difference is") && text.contains("for 90 % of such cars");
+            let is_draws = near.starts_with("The difference is")
+                && text.contains("by the error of the model on");
             assert!(has_range(near) || is_draws, "{name}: {near}");
         }
         assert!(
-            text.contains("90 % of such cars")
-                || text.contains("In brackets: what 90 %")
-                || text.contains("Of such cars"),
+            text.contains("by the error of the model on")
+                || text.contains("In brackets: 90 % range"),
             "{name}: {text}"
         );
     }
@@ -351,7 +351,7 @@ fn no_difference_of_an_own_car_is_without_its_range() {
     assert!(levers("0").contains("(without draws no interval)"));
     for samples in ["0", "2"] {
         assert!(
-            levers(samples).contains("by the model's error on 65 measured cars"),
+            levers(samples).contains("by the error of the model on 65 measured cars"),
             "{samples}"
         );
     }

@@ -30,7 +30,7 @@ fn the_strip_states_if_the_sign_is_certain() {
     for (drawn, said) in [
         (
             Some([1.2, 5.0, 9.6]),
-            "6 % more than five &lt;gears&gt;; with uncertain values varied +1 to +10 %",
+            "6 % more than five &lt;gears&gt;; with uncertain inputs varied +1 to +10 %",
         ),
         (
             Some([-1.2, 4.0, 9.1]),

@@ -282,6 +282,6 @@ fn a_study_of_another_case_stays_out_of_the_answer() {
     place.refused(
         &["report", "cold", "other", "--with", "cold/matrix"],
         2,
-        &["not of two"],
+        &["not of several"],
     );
 }

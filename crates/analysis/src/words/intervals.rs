@@ -6,22 +6,19 @@
 use std::cell::OnceCell;
 
 use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::embedded;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::{Problems, embedded};
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::summary::DrawnDifference;
 
-use crate::answer::{PLAN, Question, drive, prepare};
-use cvtcycle_config::setup::{Options, load};
-use cvtcycle_output::progress::NoProgress;
-use cvtcycle_study::plan::Plan;
-
 /// The file.
 const TABLE: &str = include_str!("../../intervals/penalty.csv");
-/// Number of draws, independent ones.
-const DRAWS: u64 = 256;
+/// The plan that is drawn.
+pub const PLAN: &str = "uncertainty_rover";
+/// Number of draws.
+pub(crate) const DRAWS: u64 = 256;
 /// Head of the file.
-const HEAD: &str = "cycle,ambient_degc,start,subject_sha256,baseline_sha256,cycle_sha256,plan_sha256,draws,more,percent_5,percent_50,percent_95";
+pub(crate) const HEAD: &str = "cycle,ambient_degc,start,subject_sha256,baseline_sha256,cycle_sha256,plan_sha256,draws,more,percent_5,percent_50,percent_95";
 
 /// Two cars under the conditions of a run.
 pub struct Pair<'a> {
@@ -75,7 +72,7 @@ fn row(pair: &Pair) -> Option<Vec<&'static str>> {
     same.then_some(row)
 }
 
-fn plan_sha256() -> String {
+pub(crate) fn plan_sha256() -> String {
     let text = embedded::plans().iter().find(|(name, _)| *name == PLAN);
     text.map_or_else(String::new, |(_, text)| hash(text.as_bytes()))
 }
@@ -93,46 +90,6 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
         more: count(8)?,
         percent: [number(9)?, number(10)?, number(11)?],
     })
-}
-
-/// Draws a case: a line of the file.
-///
-/// # Errors
-/// Problems of the plan or of its cars.
-pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, Problems> {
-    let mut base = Plan::open(PLAN)?.base;
-    cycle.clone_into(&mut base.cycle);
-    base.ambient_degc = ambient_degc;
-    start.clone_into(&mut base.start);
-    let cars = [
-        &base.vehicle,
-        &base.baselines.clone().unwrap_or_default()[0],
-    ]
-    .map(|word| Ok(car_sha256(&load(word, &Options::default())?)));
-    let [subject, baseline]: [Result<String, Problems>; 2] = cars;
-    let (subject, baseline) = (subject?, baseline?);
-    let study = prepare(&Question::differences(base, DRAWS))?;
-    let answer = drive(&study, &NoProgress)?;
-    let Some((_, of)) = answer.and_then(|answer| answer.differences.into_iter().next()) else {
-        return Ok(String::new());
-    };
-    let (of_cycle, plan) = (cycle_sha256(&study.cycles[0]), plan_sha256());
-    let (n, more, [low, median, high]) = (of.draws, of.more, of.percent);
-    Ok(format!(
-        "{cycle},{ambient_degc},{start},{subject},{baseline},{of_cycle},{plan},{n},{more},{low:.3},{median:.3},{high:.3}\n"
-    ))
-}
-
-/// The whole file.
-///
-/// # Errors
-/// As [`draw`].
-pub fn file() -> Result<String, Problems> {
-    let mut text = HEAD.to_owned() + "\n";
-    for case in CASES {
-        text += &draw(case)?;
-    }
-    Ok(text)
 }
 
 /// The line of a case in the file that the program carries.

@@ -36,19 +36,19 @@ pub fn than(compared: &str) -> &'static str {
     }
 }
 
-/// " (90 % range 6.8 to 8.2, by the model's error on 65 measured cars)": fuel.
+/// " (90 % range 6.8 to 8.2, by the error of the model on 65 measured cars)": fuel.
 #[must_use]
 pub fn of_cars(range: &FleetRange) -> String {
     let [low, high] = range.ends.map(|end| fixed(end, 1));
     let cars = range.cars;
-    format!(" (90 % range {low} to {high}, by the model's error on {cars} measured cars)")
+    format!(" (90 % range {low} to {high}, by the error of the model on {cars} measured cars)")
 }
 
-/// "90 % range -6 to +10 %, by the model's error on 28 measured cars": a difference.
+/// "90 % range -6 to +10 %, by the error of the model on 28 measured cars": a difference.
 #[must_use]
 pub fn difference_of_cars(range: &FleetRange) -> String {
     let (ends, cars) = (between(range.ends, "%"), range.cars);
-    format!("90 % range {ends}, by the model's error on {cars} measured cars")
+    format!("90 % range {ends}, by the error of the model on {cars} measured cars")
 }
 
 /// "-1 to +9 %".

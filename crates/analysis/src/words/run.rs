@@ -255,7 +255,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         ),
     };
     let first = format!(
-        "{failed}{doubt}{}: {} {}{mass}{resolution}{range}{against}.",
+        "{doubt}{failed}{}: {} {}{mass}{resolution}{range}{against}.",
         run.vehicle,
         fixed(fuel, 2),
         over.unit()

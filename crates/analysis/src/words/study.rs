@@ -229,7 +229,7 @@ fn of_climates(matrix: &Matrix, outline: &StudyManifest) -> Vec<String> {
         list.push(format!("Fuel of {subject} over {baseline}: {starts}."));
     }
     if known.is_some() {
-        list.push("In brackets: what 90 % of such cars have, by measured ones.".to_owned());
+        list.push("In brackets: 90 % range by the error of the model on measured cars.".to_owned());
     }
     list
 }

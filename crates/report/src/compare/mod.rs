@@ -1,7 +1,8 @@
-//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), and a table of any number.
+//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), and a table and a document of any number.
 
 mod figures;
 mod many;
+pub(crate) mod side_by_side;
 
 pub use many::{DifferingValue, RunComparison, Side, compare, names};
 

@@ -205,7 +205,7 @@ fn difference(comparison: &Comparison, baseline: &RunSummary, percent: f64) -> S
         },
         None => match &comparison.fleet {
             Some(range) => format!(
-                "90 % range {}, by the model's error on {} measured cars",
+                "90 % range {}, by the error of the model on {} measured cars",
                 level(range.ends),
                 range.cars
             ),

@@ -34,7 +34,7 @@ pub(super) fn strip(
         }
         Some(ends) => {
             let among = match is_by_cars {
-                true => "by the model's error on measured cars",
+                true => "by the error of the model on measured cars",
                 false => "with uncertain inputs varied",
             };
             format!("{subject} uses {compared}; {among} {}", level(ends))

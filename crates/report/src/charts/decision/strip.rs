@@ -102,7 +102,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     };
     let varied = match (has(false), has(true)) {
         (true, false) => "; bar: 90 %, uncertain inputs only",
-        (false, true) => "; bar: 90 %, by the model's error on measured cars",
+        (false, true) => "; bar: 90 %, by the error of the model on measured cars",
         (true, true) => "; bars: two kinds of 90 % range",
         (false, false) => "",
     };
