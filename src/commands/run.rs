@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clap::Args;
-use cvtcycle::analysis::answer::{Question, drive, prepare};
+use cvtcycle::analysis::draws::{drive, prepare};
 use cvtcycle::analysis::run::{RunQuestion, summary};
 use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{TWIN, is_path, is_twin};
@@ -207,7 +207,7 @@ impl Execute for RunArgs {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
                 let how = (degc, start, dt_s, cars.formulation);
                 let base = self.base(how, &cars.vehicles, problems);
-                base.and_then(|base| problems.take(prepare(&Question::differences(base, n))))
+                base.and_then(|base| problems.take(prepare(&base, n)))
             }
             _ => None,
         };
@@ -249,8 +249,7 @@ impl Execute for RunArgs {
         };
         let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {
-            let drawn =
-                drive(study, &NoProgress)?.map_or_else(Vec::new, |answer| answer.differences);
+            let drawn = drive(study, &NoProgress)?.unwrap_or_default();
             for (comparison, (_, drawn)) in summary.comparison.iter_mut().zip(drawn) {
                 comparison.interval = Some(drawn);
             }

@@ -1,6 +1,7 @@
 //! The answer of one sample. Truth: properties of a paired sample, and the same cars drawn in another question.
 
-use cvtcycle::analysis::answer::{Answer, Question, compare, drive, prepare};
+use cvtcycle::analysis::answer::{Answer, HEARD_RPM, Question, drive, prepare};
+use cvtcycle::analysis::draws::{self, compare};
 use cvtcycle::analysis::levers::LeverFile;
 use cvtcycle::config::Override;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -35,8 +36,20 @@ fn answer(question: &Question) -> Answer {
         .unwrap()
 }
 
+/// A question without levers and prices.
+fn plain(base: Base, draws: u64) -> Question {
+    Question {
+        base,
+        levers: Vec::new(),
+        prices: false,
+        draws,
+        heard_rpm: HEARD_RPM,
+    }
+}
+
 fn differences(set: &[&str]) -> Vec<(String, DrawnDifference)> {
-    answer(&Question::differences(base(set), DRAWS)).differences
+    let study = draws::prepare(&base(set), DRAWS).unwrap();
+    draws::drive(&study, &NoProgress).unwrap().unwrap()
 }
 
 /// Levers and prices add columns to the sample; what they are next to keeps its bits, though levers are driven one by one and other cars side by
@@ -44,11 +57,11 @@ fn differences(set: &[&str]) -> Vec<(String, DrawnDifference)> {
 #[test]
 fn a_document_has_one_sample() {
     let text =
-        "[[lever]]\nname = \"offset\"\nset = [\"transmission.cvt.belt.band_offset_mm-=1\"]\n";
+        "[[lever]]\nname = \"offset\"\nset = [\"transmission.cvt.belt.band_offset_mm*=0.6\"]\n";
     let whole = answer(&Question {
         levers: LeverFile::read("own.toml", text).unwrap().levers,
         prices: true,
-        ..Question::differences(base(&[]), DRAWS)
+        ..plain(base(&[]), DRAWS)
     });
     assert_eq!(whole.differences, differences(&[]));
     assert_eq!(whole.differences[0].0, "rover_216_5mt");
@@ -85,7 +98,7 @@ fn no_change_is_none_in_every_draw() {
 fn a_loss_that_is_absent_has_no_price() {
     let found = answer(&Question {
         prices: true,
-        ..Question::differences(base(&["transmission.cvt.loss_factor.pump=0"]), DRAWS)
+        ..plain(base(&["transmission.cvt.loss_factor.pump=0"]), DRAWS)
     });
     let price = |name: &str| found.prices.iter().find(|(own, _)| own == name).unwrap().1;
     assert_eq!(price("pump"), [0.0; 3]);
@@ -127,13 +140,13 @@ fn ranges_of_a_file_are_drawn() {
     let spread = |name: &str, range: &str| {
         let file = dir.path().join(format!("{name}.toml"));
         let text = format!(
-            "like = \"rover_216_cvt\"\n[road_load]\nmass_kg = {{ value = 1130, range = {range}, status = \"assumed\" }}\n"
+            "[vehicle]\nlike = \"rover_216_cvt\"\n[road_load]\nmass_kg = {{ value = 1130, range = {range}, status = \"assumed\" }}\n"
         );
         std::fs::write(&file, text).unwrap();
         let mut base = base(&[]);
         base.vehicle = file.to_string_lossy().into_owned();
         base.baselines = Some(Vec::new());
-        let [low, _, high] = answer(&Question::differences(base, 64)).fuel_l_per_100km;
+        let [low, _, high] = answer(&plain(base, 64)).fuel_l_per_100km;
         high - low
     };
     let (narrow, wide) = (

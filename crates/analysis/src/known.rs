@@ -1,6 +1,6 @@
 //! Draws the intervals that the program carries for the usual cases of shipped cars (`words::intervals`).
 
-use crate::answer::{Question, drive, prepare};
+use crate::draws::{drive, prepare};
 use crate::words::intervals::{CASES, DRAWS, HEAD, PLAN, plan_sha256};
 use cvtcycle_config::Problems;
 use cvtcycle_config::setup::{Options, load};
@@ -24,9 +24,9 @@ pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, P
     .map(|word| Ok(car_sha256(&load(word, &Options::default())?)));
     let [subject, baseline]: [Result<String, Problems>; 2] = cars;
     let (subject, baseline) = (subject?, baseline?);
-    let study = prepare(&Question::differences(base, DRAWS))?;
-    let answer = drive(&study, &NoProgress)?;
-    let Some((_, of)) = answer.and_then(|answer| answer.differences.into_iter().next()) else {
+    let study = prepare(&base, DRAWS)?;
+    let found = drive(&study, &NoProgress)?;
+    let Some((_, of)) = found.and_then(|found| found.into_iter().next()) else {
         return Ok(String::new());
     };
     let (of_cycle, plan) = (cycle_sha256(&study.cycles[0]), plan_sha256());

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `attribute` | what each loss costs: the car driven again without it |
 //! | `optimum` | the least fuel that any controller of ratio and clamp can burn, and the operating line near it |
+//! | `draws` | a car and those that it is compared with over the same draws of what is uncertain |
 //! | `answer` | every range of a car's answer from one sample of what is uncertain of it |
 //! | `levers` | changes of a design, each next to the car as it is, with the same draws |
 //! | `accelerate` | full-throttle times: from one speed to another, over a distance, with the limit of grip |
@@ -17,6 +18,7 @@
 pub mod accelerate;
 pub mod answer;
 pub mod attribute;
+pub mod draws;
 pub mod known;
 pub mod label;
 pub mod optimum;

@@ -1,7 +1,7 @@
 //! First lines of a run: contradicted published numbers, and the confidence of differences.
 
 use super::*;
-use cvtcycle::analysis::answer::{Question, prepare};
+use cvtcycle::analysis::draws::prepare;
 use cvtcycle::analysis::known::draw;
 use cvtcycle::analysis::words::intervals::{CASES, line};
 use cvtcycle::config::Override;
@@ -455,7 +455,7 @@ fn values_set_by_the_user_are_certain() {
         let mut base = Plan::open("uncertainty_rover").unwrap().base;
         base.set = Override::parse_all(set).unwrap();
         base.set_all = Override::parse_all(set_all).unwrap();
-        let study = prepare(&Question::differences(base, 2)).unwrap();
+        let study = prepare(&base, 2).unwrap();
         let factors = study.plan.factors.iter();
         factors.map(|factor| factor.key.clone()).collect()
     };

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::request::{ColumnNote, LeverNotes};
+use crate::draws::failed_checks;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, ProblemKind};
 use cvtcycle_output::fleet_spread::{FleetRange, fuel_range};
@@ -171,20 +172,6 @@ pub struct SetBy {
     pub key: String,
     /// Share of the variance of the change (IN-2).
     pub share: f64,
-}
-
-/// What failed of values that do not go together, in the place of the name of a check.
-const IMPOSSIBLE: &str = "impossible_values";
-
-/// Names of the checks in the reason of a failed run: the first word of each part, since what follows differs from run to run. A car that cannot be
-/// driven has a sentence in their place.
-pub(crate) fn failed_checks(reason: &str) -> impl Iterator<Item = String> {
-    let all = reason.split("; ").filter(|one| !one.is_empty());
-    all.map(|one| match one.split_once(' ') {
-        None => one.to_owned(),
-        Some((name, rest)) if rest.starts_with("for ") => name.to_owned(),
-        Some(_) => IMPOSSIBLE.to_owned(),
-    })
 }
 
 impl LeverAnswer {

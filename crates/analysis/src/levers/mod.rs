@@ -20,11 +20,10 @@ mod request;
 mod tables;
 mod words;
 
-pub(crate) use answer::failed_checks;
 pub use answer::{Between, LeverAnswer, LeverBlock, LeverRow, SetBy, SideEffect, lever_answer};
 pub use combine::{COMBINE, Combine};
 pub use prepare::prepare;
-pub use request::{ColumnNote, LeverNotes, LeverRequest, OtherCar, OtherKind};
+pub use request::{ColumnNote, LeverNotes, LeverRequest};
 pub use tables::csv;
 pub use words::answer_in_words;
 

@@ -7,13 +7,14 @@
 
 use super::cars::{LeverCar, cars};
 use super::combine::{Combination, Nominal, check, combinations};
-use super::request::{ColumnNote, LeverNotes, LeverRequest, OtherCar, OtherKind};
+use super::request::{ColumnNote, LeverNotes, LeverRequest};
 use super::{Lever, options};
-use cvtcycle_config::setup::{Options, load};
-use cvtcycle_config::{Acts, Override, Problem, Problems};
+use crate::draws::{Given, OtherCar, OtherKind, with_knowledge};
+use cvtcycle_config::setup::load;
+use cvtcycle_config::{Problem, Problems};
 use cvtcycle_study::execute::outputs::FUEL;
-use cvtcycle_study::execute::{Column, Columns, Study, idle, relative, with_ranges};
-use cvtcycle_study::plan::{Base, Cars, Design, Factor, Plan, RUN_OPTIONS};
+use cvtcycle_study::execute::{Column, Columns, Study, idle, relative};
+use cvtcycle_study::plan::{Base, Design, Factor, Plan, RUN_OPTIONS};
 
 /// A column's car with its changes.
 struct Change<'r> {
@@ -57,15 +58,21 @@ pub fn prepare(request: &LeverRequest) -> Result<Study, Problems> {
         return Err(problems);
     };
     problems.finish()?;
+    let plain = options(&request.base, std::iter::empty());
+    let own = cars.iter().map(|car| load(&car.word, &plain));
+    let others = request.others.iter();
+    let others = others.filter(|other| other.kind == OtherKind::Baseline);
+    let others = others.map(|other| load(&other.word, &other.options));
+    let setups = own.chain(others).collect::<Result<Vec<_>, _>>()?;
+    let given = Given {
+        set_all: &request.set_all,
+        set: &request.base.set,
+        is_like_subject: cars.first().is_some_and(|car| car.is_cvt == of_cvt),
+    };
     if request.draws.is_some() {
-        let others = request.others.iter();
-        let others = others.filter(|other| other.kind == OtherKind::Baseline);
-        let words = others.map(|other| (&other.word, &other.options));
-        plan = with_ranges_of(plan, of_cvt, &cars, (request, words))?;
+        let setups: Vec<_> = setups.iter().collect();
+        plan = with_knowledge(plan, of_cvt, &setups, &given);
     }
-    let is_like_subject = cars.first().is_some_and(|car| car.is_cvt == of_cvt);
-    plan.factors
-        .retain(|factor| !is_given(factor, request, is_like_subject));
     let mut columns = Builder {
         request,
         plan: &plan,
@@ -157,42 +164,6 @@ fn plan_of(request: &LeverRequest) -> Result<(Plan, bool), Problems> {
         },
         of_cvt,
     ))
-}
-
-/// The plan with the ranges that the cars and their baselines give their own values.
-fn with_ranges_of<'r>(
-    plan: Plan,
-    of_cvt: bool,
-    cars: &[LeverCar],
-    (request, others): (
-        &'r LeverRequest,
-        impl Iterator<Item = (&'r String, &'r Options)>,
-    ),
-) -> Result<Plan, Problems> {
-    let plain = options(&request.base, std::iter::empty());
-    let own = cars.iter().map(|car| load(&car.word, &plain));
-    let others = others.map(|(word, options)| load(word, options));
-    let setups = own.chain(others).collect::<Result<Vec<_>, _>>()?;
-    Ok(with_ranges(
-        plan,
-        of_cvt,
-        &setups.iter().collect::<Vec<_>>(),
-    ))
-}
-
-/// True for a factor whose value the user has given all of its cars: it is certain.
-fn is_given(factor: &Factor, request: &LeverRequest, is_like_subject: bool) -> bool {
-    let sets = |by: &Override| match factor.acts {
-        // The value of a key, or a table with another option.
-        Acts::Value => factor.key == by.key() || factor.key.starts_with(&format!("{}.", by.key())),
-        _ => by.acts() == Acts::Value && factor.key == by.key(),
-    };
-    let of_subject = match factor.cars {
-        Cars::Baselines => !is_like_subject,
-        Cars::Subject => is_like_subject,
-        Cars::All => factor.acts == Acts::Value,
-    };
-    request.set_all.iter().any(sets) || of_subject && request.base.set.iter().any(sets)
 }
 
 /// The plan of cars as their files have them.

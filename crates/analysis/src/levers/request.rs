@@ -2,6 +2,7 @@
 
 use super::Lever;
 use super::combine::Combine;
+use crate::draws::OtherCar;
 use cvtcycle_config::Override;
 use cvtcycle_config::setup::Options;
 use cvtcycle_study::plan::Plan;
@@ -36,46 +37,6 @@ pub struct LeverRequest {
     pub heard_rpm: f64,
 }
 
-/// A car that is driven with the draws of another one.
-#[derive(Clone, Debug)]
-pub struct OtherCar {
-    /// What it is compared for.
-    pub kind: OtherKind,
-    /// Name, unique within its kind.
-    pub name: String,
-    /// Name or path of its file.
-    pub word: String,
-    /// Oils and overrides.
-    pub options: Options,
-    /// True if it has a CVT.
-    pub is_cvt: bool,
-}
-
-/// What another car is compared for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OtherKind {
-    /// A baseline.
-    Baseline,
-    /// The car before the change that the user makes.
-    Unchanged,
-    /// The car without one of its losses.
-    WithoutLoss,
-    /// The subject of another run.
-    OtherRun,
-}
-
-impl OtherKind {
-    /// Word in the table.
-    pub fn name(self) -> &'static str {
-        match self {
-            OtherKind::Baseline => "baseline",
-            OtherKind::Unchanged => "unchanged",
-            OtherKind::WithoutLoss => "without_loss",
-            OtherKind::OtherRun => "other_run",
-        }
-    }
-}
-
 /// Description of the columns of a lever study.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LeverNotes {
@@ -96,7 +57,7 @@ pub struct ColumnNote {
     pub vehicle: String,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
-    /// `reference`, `lever`, `combination` or the name of an [`OtherKind`].
+    /// `reference`, `lever`, `combination` or the name of an [`OtherKind`](crate::draws::OtherKind).
     pub kind: String,
     /// Name of the lever.
     pub name: String,

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::problems::problem;
 use crate::results::{ResultDir, RunResults, find};
 use crate::whatif::base_of_run;
-use cvtcycle_analysis::answer;
+use cvtcycle_analysis::draws;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, Problems, Setting};
 use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
@@ -196,7 +196,7 @@ fn draw(named: &[(String, RunResults)], compared: &mut RunComparison) {
     let Some([first, others @ ..]) = bases.as_deref() else {
         return;
     };
-    let Ok(drawn) = answer::compare(first, others, DRAWS) else {
+    let Ok(drawn) = draws::compare(first, others, DRAWS) else {
         return;
     };
     for (side, drawn) in compared.runs.iter_mut().skip(1).zip(drawn) {

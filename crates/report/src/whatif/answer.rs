@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use cvtcycle_analysis::answer::{Draws, Question, prepare};
+use cvtcycle_analysis::draws::{Draws, prepare};
 use cvtcycle_analysis::words::run::{
     assess_fleet, contradicted, contradictions, maps_left, sentences,
 };
@@ -169,12 +169,8 @@ impl LivePage {
             None => Draws::new(self.study(state)?),
         };
         let found = draws.advance()?;
-        let found = found.map(|answer| -> Vec<DrawnDifference> {
-            answer
-                .differences
-                .into_iter()
-                .map(|(_, drawn)| drawn)
-                .collect()
+        let found = found.map(|list| -> Vec<DrawnDifference> {
+            list.into_iter().map(|(_, drawn)| drawn).collect()
         });
         if found.is_none() {
             self.draws = Some((state.clone(), draws));
@@ -251,7 +247,7 @@ impl LivePage {
             dt_s: scene.dt_s,
             formulation: scene.formulation(),
         };
-        prepare(&Question::differences(base, DRAWS))
+        prepare(&base, DRAWS)
     }
 
     /// Overrides of the moved levers, in the order of the page.

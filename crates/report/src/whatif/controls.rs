@@ -1,6 +1,6 @@
 //! Levers of a car: sliders of single values and choices among shipped changes, as far as the car has them.
 
-use cvtcycle_analysis::answer::PLAN;
+use cvtcycle_analysis::draws::PLAN;
 use cvtcycle_analysis::levers::{Lever, LeverFile};
 use cvtcycle_config::setup::{Kind as FileKind, Options, Param, ParamSet, Setup, load};
 use cvtcycle_config::{Acts, Bound, Override, Problems};
