@@ -140,18 +140,20 @@ fn ranges_of_a_file_are_drawn() {
     let spread = |name: &str, range: &str| {
         let file = dir.path().join(format!("{name}.toml"));
         let text = format!(
-            "[vehicle]\nlike = \"rover_216_cvt\"\n[road_load]\nmass_kg = {{ value = 1130, range = {range}, status = \"assumed\" }}\n"
+            "[vehicle]\nlike = \"rover_216_cvt\"\n[road_load.form.coefficients]\nf2_n_per_kmh2 = {{ value = 0.0433, range = {range}, status = \"assumed\" }}\n"
         );
         std::fs::write(&file, text).unwrap();
         let mut base = base(&[]);
         base.vehicle = file.to_string_lossy().into_owned();
         base.baselines = Some(Vec::new());
+        "constant_120".clone_into(&mut base.cycle);
+        base.ambient_degc = 25.0;
         let [low, _, high] = answer(&plain(base, 64)).fuel_l_per_100km;
         high - low
     };
     let (narrow, wide) = (
-        spread("narrow", "[1129, 1131]"),
-        spread("wide", "[600, 1700]"),
+        spread("narrow", "[0.0432, 0.0434]"),
+        spread("wide", "[0.02, 0.08]"),
     );
     assert!(wide > 2.0 * narrow, "{narrow} {wide}");
 }

@@ -329,8 +329,7 @@ fn no_difference_of_an_own_car_is_without_its_range() {
             assert!(has_range(near) || is_draws, "{name}: {near}");
         }
         assert!(
-            text.contains("error of the model")
-                || text.contains("In brackets: 90 % range"),
+            text.contains("error of the model") || text.contains("In brackets: 90 % range"),
             "{name}: {text}"
         );
     }

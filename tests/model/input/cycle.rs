@@ -429,7 +429,7 @@ fn a_constant_speed_is_600_s_with_flying_start() {
         ("constant_120", 20_000.0),
         ("constant_88.5", 14_750.0),
         ("constant_250", 250_000.0 / 6.0),
-        ("constant_0.001", 1.0 / 6.0),
+        ("constant_0.1", 50.0 / 3.0),
     ] {
         let cycle = constant_speed(name).unwrap().unwrap();
         let trace = cycle.trace_for(true);

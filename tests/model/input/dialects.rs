@@ -332,7 +332,7 @@ fn what_can_be_read_in_two_ways_is_refused_with_both_at_its_place() {
         ),
         ("<s>,<v>,<stop>\n0,0,1\n9,0,2\n", 3, 1, "from rest to rest"),
         (
-            "<s>,<v>\n0,1e-9\n9999,1e-9\n",
+            "<s>,<v>\n0,0.2\n99999,0.2\n",
             0,
             0,
             "the cycle over distance takes",

@@ -54,7 +54,7 @@ fn val_two_runs_differ_by_what_their_summaries_differ() {
         &["ece15", "eudc", "runs of one cycle"],
     );
     matrix(&place, "matrix");
-    place.refused(&["report", "a", "matrix"], 2, &["not two runs", "--with"]);
+    place.refused(&["report", "a", "matrix"], 2, &["not all runs", "--with"]);
 }
 
 #[test]

@@ -172,15 +172,15 @@ const PREFIX: &str = "constant_";
 const DURATION_S: f64 = 600.0;
 const HIGHEST_KMH: f64 = 250.0;
 /// Slower is no speed of a car: a metre in an hour.
-const LOWEST_KMH: f64 = 0.001;
+const LOWEST_KMH: f64 = 0.1;
 /// The constant speeds that there are.
-pub const CONSTANT: &str = "constant_V with V in km/h, 0.001 to 250";
+pub const CONSTANT: &str = "constant_V with V in km/h, 0.1 to 250";
 
 /// The cycle `constant_90`, `constant_120` or, in general, `constant_V`: 600 s at V km/h with a flying start.
 /// `None` if the name does not begin with `constant_`.
 ///
 /// # Errors
-/// V is not a plain decimal number from 0.001 to 250.
+/// V is not a plain decimal number from 0.1 to 250.
 #[must_use]
 pub fn constant_speed(name: &str) -> Option<Result<Cycle, Problem>> {
     let text = name.strip_prefix(PREFIX)?;
