@@ -108,7 +108,7 @@ pub enum Command {
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
-    Report(report::ReportArgs),
+    Report(Box<report::ReportArgs>),
     /// Make a page on which a car can be driven again with other values: no server, no network
     Whatif(Box<whatif::WhatifArgs>),
     /// Compare runs with each other: fuel, losses, and the values in which the cars differ

@@ -36,6 +36,11 @@ fn answer(question: &Question) -> Answer {
         .unwrap()
 }
 
+/// True if all quantiles are 0 to the last bit.
+fn is_zero(quantiles: [f64; 3]) -> bool {
+    quantiles.iter().all(|x| x.abs() == 0.0)
+}
+
 /// A question without levers and prices.
 fn plain(base: Base, draws: u64) -> Question {
     Question {
@@ -84,7 +89,7 @@ fn no_change_is_none_in_every_draw() {
     let same = differences(&["transmission.cvt.belt.band_offset_mm=3"]);
     let names: Vec<&str> = same.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["unchanged", "rover_216_5mt"]);
-    assert_eq!(same[0].1.percent, [0.0; 3]);
+    assert!(is_zero(same[0].1.percent));
     let less = differences(&["transmission.cvt.belt.band_offset_mm=2"]);
     let [low, median, high] = less[0].1.percent;
     assert!(
@@ -101,7 +106,7 @@ fn a_loss_that_is_absent_has_no_price() {
         ..plain(base(&["transmission.cvt.loss_factor.pump=0"]), DRAWS)
     });
     let price = |name: &str| found.prices.iter().find(|(own, _)| own == name).unwrap().1;
-    assert_eq!(price("pump"), [0.0; 3]);
+    assert!(is_zero(price("pump")));
     assert!(price("final_drive")[0] > 0.0);
 }
 
@@ -123,7 +128,7 @@ fn runs_are_compared_over_one_sample() {
     let set = ["transmission.cvt.belt.band_offset_mm=2"];
     let found = compare(&base(&[]), &[base(&set), base(&[])], DRAWS).unwrap();
     assert_eq!(found.len(), 2);
-    assert_eq!(found[1].percent, [0.0; 3]);
+    assert!(is_zero(found[1].percent));
     let [low, _, high] = found[0].percent;
     let direct = &differences(&set)[0].1;
     assert!(low < high && high < 0.0);

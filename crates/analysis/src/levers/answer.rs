@@ -329,10 +329,9 @@ fn blocks(
         }
         let is_lever = ["lever", "combination"].contains(&column.kind.as_str());
         if let Some(block) = blocks.last_mut().filter(|_| is_lever) {
-            let set_by = |percent: &[f64]| set_by(outline, percent, confidence);
             block
                 .rows
-                .push(row(k, column, numbers, (confidence, &set_by)));
+                .push(row(k, column, numbers, (confidence, outline)));
         }
     }
     for block in &mut blocks {
@@ -417,7 +416,7 @@ fn row(
     column: usize,
     note: &ColumnNote,
     numbers: &Numbers,
-    (confidence, set_by): (Confidence, &dyn Fn(&[f64]) -> Option<SetBy>),
+    (confidence, outline): (Confidence, &StudyManifest),
 ) -> LeverRow {
     let reference = note.reference;
     let pairs = |of: &[Vec<f64>]| -> Vec<(f64, f64)> {
@@ -456,7 +455,7 @@ fn row(
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,
-        set_by: set_by(&percent),
+        set_by: set_by(outline, &percent, confidence),
         effects: effects
             .map(|((name, unit, largest), of)| {
                 let changes = changes(of);

@@ -393,7 +393,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
 fn no_test(answer: Option<&Answer>) -> String {
     match answer {
         Some(answer) => format!(
-            "No single value stands out in {} runs: none of them known would narrow the answer by more than chance.",
+            "No single value narrows the answer by more than chance in {} runs.",
             answer.draws
         ),
         None => "Not known: the uncertain values of this case were not varied.".to_owned(),
@@ -426,7 +426,7 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
     }
     let (information, best) = study::cause(own)?;
     let of = ("fuel difference", "percentage points");
-    Some(test_words(&information, &best, of))
+    Some(test_words(information, best, of))
 }
 
 fn test_words(
