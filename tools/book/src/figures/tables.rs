@@ -83,6 +83,7 @@ fn index(source: &Path) -> Result<String, String> {
         "cycles",
         "label",
         "levers",
+        "one_sample",
         "physics_checks",
         "rigs",
         "start_stop",
