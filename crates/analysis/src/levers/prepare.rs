@@ -41,6 +41,7 @@ struct Change<'r> {
 ///     start: "soak".to_owned(),
 ///     dt_s: 1.0,
 ///     base: Options::default(),
+///     set_all: Vec::new(),
 ///     others: Vec::new(),
 ///     draws: None,
 ///     combine: Combine::None,
