@@ -10,10 +10,10 @@ use cvtcycle::report::write::{Form, Target};
 use cvtcycle::report::{Drives, report_with};
 
 use super::run::RunArgs;
-use super::vehicles::ComparedArgs;
+use super::vehicles::CaseArgs;
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{AmbientArgs, DrivingArgs, Names, ResultArgs, choice_names, one_of};
+use crate::args::{Names, ResultArgs, choice_names, one_of};
 use crate::print::progress::Progress;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
@@ -67,11 +67,7 @@ pub struct ReportArgs {
     #[arg(value_name = "DIR", num_args = 0..=20)]
     dirs: Vec<PathBuf>,
     #[command(flatten)]
-    cars: ComparedArgs,
-    #[command(flatten)]
-    ambient: AmbientArgs,
-    #[command(flatten)]
-    driving: DrivingArgs,
+    case: CaseArgs,
     /// Only what the directory holds: no draws, no options
     #[arg(long)]
     stored: bool,
@@ -120,12 +116,7 @@ impl ReportArgs {
             problem("report", &message, "name another by the variable TMPDIR")
         });
         let dir = problems.take(dir)?;
-        let run = RunArgs::for_report(
-            self.cars.clone(),
-            self.ambient.clone(),
-            self.driving.clone(),
-            &dir.path().join("run"),
-        );
+        let run = RunArgs::for_report(self.case.clone(), &dir.path().join("run"));
         let plan = run.plan(problems).filter(|_| problems.is_empty())?;
         // Failed checks are in the report.
         problems.take(run.run(plan, Terminal::new(ColorChoice::Never)))?;

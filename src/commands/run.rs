@@ -24,12 +24,11 @@ use cvtcycle::study::plan::Base;
 use cvtcycle::validate::published;
 
 use super::threads::in_parallel;
-use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};
+use super::vehicles::{self, Baselines, CaseArgs, ComparedArgs, ComparedVehicles, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
 use crate::args::{
-    AmbientArgs, DrivingArgs, Names, OutArgs, OutputArgs, choice_names, count_if_given, one_of,
-    word_for_plan,
+    DrivingArgs, Names, OutArgs, OutputArgs, choice_names, count_if_given, one_of, word_for_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::report::run_files::{self, TraceFormat};
@@ -55,11 +54,7 @@ Examples:
 )]
 pub struct RunArgs {
     #[command(flatten)]
-    cars: ComparedArgs,
-    #[command(flatten)]
-    ambient: AmbientArgs,
-    #[command(flatten)]
-    driving: DrivingArgs,
+    case: CaseArgs,
     /// Drive each vehicle again without each loss for the fuel that it costs: always, never, or auto (unless the cycle has more
     /// than 20 000 steps)
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| choice_names(&When::NAMES)), hide_possible_values = true)]
@@ -86,7 +81,7 @@ pub struct RunArgs {
     output: OutputArgs,
 }
 
-/// Draws of a change where none are asked for: as many as give its ends a range of their own (ES-3).
+/// Number of draws of a change without --draws: the least that give its ends a range of their own (ES-3).
 const DRAWS_OF_CHANGE: u64 = 72;
 
 /// Checked input of a run.
@@ -102,16 +97,9 @@ pub struct RunPlan {
 
 impl RunArgs {
     /// Arguments of the run behind a report, written to a directory.
-    pub fn for_report(
-        cars: ComparedArgs,
-        ambient: AmbientArgs,
-        driving: DrivingArgs,
-        dir: &Path,
-    ) -> RunArgs {
+    pub fn for_report(case: CaseArgs, dir: &Path) -> RunArgs {
         RunArgs {
-            cars,
-            ambient,
-            driving,
+            case,
             price: When::Auto.name().to_owned(),
             draws: None,
             strict: false,
@@ -127,7 +115,10 @@ impl RunArgs {
 
     /// Path of the cycle's file, where no option says how it is read.
     fn cycle_file(&self) -> Option<String> {
-        let (word, columns) = (&self.cars.comparison.cycle.word, &self.cars.columns);
+        let (word, columns) = (
+            &self.case.cars.comparison.cycle.word,
+            &self.case.cars.columns,
+        );
         let is_plain = columns.columns.is_none() && columns.repair.is_none();
         (is_path(word) && is_plain).then(|| word.clone())
     }
@@ -144,7 +135,7 @@ impl RunArgs {
             car,
             comparison,
             columns,
-        } = &self.cars;
+        } = &self.case.cars;
         let refused = match (baselines.is_empty(), &columns.columns) {
             (true, _) => Some(("there is no baseline", "name one: --baseline twin")),
             (false, Some(_)) => Some((
@@ -184,9 +175,12 @@ impl Execute for RunArgs {
     type Plan = RunPlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<RunPlan> {
-        let DrivingArgs { drive, formulation } = &self.driving;
-        let cars = self.cars.load(Baselines::OfFile, formulation, problems);
-        let ambient = self.ambient.get(problems);
+        let DrivingArgs { drive, formulation } = &self.case.driving;
+        let cars = self
+            .case
+            .cars
+            .load(Baselines::OfFile, formulation, problems);
+        let ambient = self.case.ambient.get(problems);
         let (start, dt_s) = drive.get(problems);
         let start = start.map(|start| match &cars.cycle {
             Some(cycle) => start_on(cycle, start),
@@ -201,7 +195,7 @@ impl Execute for RunArgs {
         }
         let wanted = count_if_given("--draws", self.draws.as_ref(), DRAWS, problems);
         let is_changed = cars.vehicles.iter().any(|car| car.is_unchanged);
-        let is_drawn = is_changed && self.cars.columns.columns.is_none();
+        let is_drawn = is_changed && self.case.cars.columns.columns.is_none();
         let wanted = wanted.or((is_drawn && self.draws.is_none()).then_some(DRAWS_OF_CHANGE));
         let draws = match (wanted, ambient, &start, dt_s) {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
@@ -242,7 +236,7 @@ impl Execute for RunArgs {
             conditions,
             ambient_degc: plan.ambient_degc,
             start: plan.cars.start.1.clone(),
-            settings: plan.cars.settings(&self.cars, self.strict),
+            settings: plan.cars.settings(&self.case.cars, self.strict),
             price: plan.price.wanted(cycle, plan.cars.dt_s),
             has_unchanged: vehicles.iter().any(|car| car.is_unchanged),
             published: Some(published),

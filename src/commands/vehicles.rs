@@ -12,7 +12,9 @@ use cvtcycle::output::summary::{Driven, Settings, StartWord, start_on};
 
 use super::threads::in_parallel;
 use crate::args::problems::{cite_override, overrides};
-use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
+use crate::args::{
+    AmbientArgs, ColumnsArgs, ComparisonArgs, DrivingArgs, FormulationArgs, VehicleArgs,
+};
 
 /// A vehicle of a run.
 pub struct RunVehicle {
@@ -26,6 +28,17 @@ pub struct RunVehicle {
     pub options: Options,
     /// True for the subject before the changes of its user.
     pub is_unchanged: bool,
+}
+
+/// A run: its vehicles, cycle and conditions.
+#[derive(Args, Clone, Debug)]
+pub struct CaseArgs {
+    #[command(flatten)]
+    pub cars: ComparedArgs,
+    #[command(flatten)]
+    pub ambient: AmbientArgs,
+    #[command(flatten)]
+    pub driving: DrivingArgs,
 }
 
 /// Vehicles to compare, and their cycle.
@@ -213,7 +226,7 @@ pub fn load(
         named_by,
         ..baseline
     };
-    // What the user changes is compared with the car of its file, which may be none without them.
+    // A change is compared with the car of the file, unless that is no whole car without it.
     let is_changed = car.lubricant.is_some() || !car.set.is_empty();
     let is_wanted = baselines == Baselines::OfFile && !comparison.has_none();
     let unchanged = (is_changed && is_wanted && setup.is_some())

@@ -35,7 +35,7 @@ pub const SCHEMA: u32 = 1;
 pub const DRAWS: u64 = 256;
 
 /// A car, and what is wanted to know of it. The ranges of the plan are taken relative to the values of the car; a range that a file gives its value
-/// goes before them. What the user has given a value is certain.
+/// goes before them. A value that the user has given is certain.
 #[derive(Clone, Debug)]
 pub struct Question {
     /// Cars and conditions.
@@ -50,7 +50,7 @@ pub struct Question {
     pub heard_rpm: f64,
 }
 
-/// What one sample says of a car.
+/// Ranges, prices, options and risks of a car, all from one sample.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
     /// Version of this object.
@@ -67,7 +67,7 @@ pub struct Answer {
     pub prices: Vec<(String, [f64; 3])>,
     /// Changes of the design.
     pub levers: LeverAnswer,
-    /// What is left of the spread of the difference to the first baseline, or of the fuel without one, where a value is known.
+    /// Value of knowing each factor: the spread that is left of the difference to the first baseline, or of the fuel without one.
     pub information: Option<Information>,
 }
 

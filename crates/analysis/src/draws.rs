@@ -32,7 +32,7 @@ const REFERENCE: &str = "reference";
 /// A car that is driven with the draws of another one.
 #[derive(Clone, Debug)]
 pub struct OtherCar {
-    /// What it is compared for.
+    /// Purpose of the comparison.
     pub kind: OtherKind,
     /// Name, unique within its kind.
     pub name: String,
@@ -44,7 +44,7 @@ pub struct OtherCar {
     pub is_cvt: bool,
 }
 
-/// What another car is compared for.
+/// Purpose of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OtherKind {
     /// A baseline.
@@ -140,7 +140,7 @@ pub(crate) fn options_of(base: &Base, lubricant: Option<String>, set: &[Override
     }
 }
 
-/// What the user has given: overrides of all cars, and of the subject, which has the box of the plan's subject or not.
+/// Overrides by the user, of all cars and of the subject alone, which has the box of the plan's subject or not.
 pub(crate) struct Given<'g> {
     pub set_all: &'g [Override],
     pub set: &'g [Override],
@@ -190,9 +190,9 @@ fn study(
     draws: u64,
 ) -> Result<Study, Problems> {
     let (plan, of_cvt) = relative(Plan::open(PLAN)?)?;
-    let baselines = others
-        .iter()
-        .filter(|other| other.kind == OtherKind::Baseline);
+    // The other cars of this list have the values of the subject.
+    let own = [OtherKind::Unchanged, OtherKind::WithoutLoss];
+    let baselines = others.iter().filter(|other| !own.contains(&other.kind));
     let baselines = baselines.map(|other| load(&other.word, &other.options));
     let baselines = baselines.collect::<Result<Vec<_>, _>>()?;
     let cars: Vec<&Setup> = [setup].into_iter().chain(&baselines).collect();
@@ -421,7 +421,7 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
     }
 }
 
-/// What failed of values that do not go together, in the place of the name of a check.
+/// Name of the failure of a car whose values do not go together, in the place of a check's.
 const IMPOSSIBLE: &str = "impossible_values";
 
 /// Names of the checks in the reason of a failed run: the first word of each part, since what follows differs from run to run. A car that cannot be

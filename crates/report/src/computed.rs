@@ -2,7 +2,7 @@
 
 use cvtcycle_analysis::answer::{Answer, DRAWS, HEARD_RPM, Question, prepare, shipped_levers};
 use cvtcycle_config::{Problem, Problems};
-use cvtcycle_output::summary::{Comparison, DrawnDifference, Over, Summary};
+use cvtcycle_output::summary::{Over, Summary};
 use cvtcycle_study::Study;
 
 use crate::results::RunResults;
@@ -41,15 +41,11 @@ fn first_message(problems: &Problems) -> String {
     first.map_or_else(String::new, |problem: &Problem| problem.message.clone())
 }
 
-/// Puts the ranges of an answer in place of those of other samples: a document has one. The difference to a baseline keeps the range of measured
-/// cars where there is one: it holds the error of the model, which no draw has.
+/// Puts the ranges of an answer in place of those of other samples: a document has one.
 pub(crate) fn merge(summary: &mut Summary, answer: &Answer) {
     if summary.comparison.len() == answer.differences.len() {
         let drawn = answer.differences.iter().map(|(_, drawn)| drawn.clone());
-        let without_cars =
-            |(comparison, _): &(&mut Comparison, DrawnDifference)| comparison.fleet.is_none();
-        let pairs = summary.comparison.iter_mut().zip(drawn);
-        for (comparison, drawn) in pairs.filter(without_cars) {
+        for (comparison, drawn) in summary.comparison.iter_mut().zip(drawn) {
             comparison.interval = Some(drawn);
         }
     }

@@ -411,7 +411,7 @@ fn a_comparison_of_oils_notes_the_friction_it_changes() {
         let bands = "not measured with this fluid: bands";
         assert_eq!(notes.contains(bands), says, "{oil}: {notes}");
     }
-    // Its own value is known in both commands, and has no source.
+    // Both commands know its own value, which has no source.
     let shown = one_line(&stdout(&run_in(dir.path(), &["show", "own.toml"])));
     assert!(
         shown.contains("bands on shoulders and on each other: known: 0.12: user elements"),

@@ -159,7 +159,8 @@ fn intervals_equal_those_of_the_draws() {
     );
     let text = flat(&stdout(&run(&words)));
     assert!(
-        text.contains(" than rover_216_5mt (90 % of 256 runs with uncertain values varied: "),
+        text.contains(" than rover_216_5mt (90 % range -")
+            && text.contains("; uncertain inputs alone +1 to +10 %, more in 252 of 256 runs)"),
         "{text}"
     );
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();

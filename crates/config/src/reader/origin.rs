@@ -77,7 +77,7 @@ impl<'r> Found<'r> {
 
     /// Adds what the value says about itself. What an inherited one says is a remark: it is true of the car that it was written for.
     pub(super) fn add(&mut self, own: Origin<'r>, is_inherited: bool) {
-        // What is known of a class or of a like car is what is known of a car that inherits it.
+        // A car that inherits a value knows as much of it as its class or like car.
         self.range = own.range;
         if is_inherited {
             self.note = Cow::Owned(own.words());

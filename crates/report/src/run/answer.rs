@@ -12,7 +12,9 @@ use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
 use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
 use cvtcycle_analysis::words::{decimals, of_cars};
-use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary, UNCHANGED};
+use cvtcycle_output::summary::{
+    Comparison, Contradiction, DrawnDifference, Over, RunSummary, Summary, UNCHANGED,
+};
 use cvtcycle_study::answer::{Information, KnownFactor};
 use cvtcycle_study::execute::side_effects::FLOOR;
 
@@ -131,11 +133,16 @@ pub(super) fn computed_options(found: &RunResults) -> Options {
     Some((answer, block))
 }
 
-/// Range of a difference: that of like cars, which holds the error of the model, before that of draws; of a change of one car only the draws.
-fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
-    match &comparison.interval {
-        Some(drawn) => drawn.ends(),
-        None => Some(comparison.fleet.as_ref()?.ends),
+/// Range of a difference, and whether it is by measured cars: that of like cars, which holds the error of the model, before that of draws of the
+/// inputs; none where too many draws fail.
+fn interval(comparison: &Comparison) -> Option<([f64; 2], bool)> {
+    let drawn = comparison.interval.as_ref();
+    if drawn.is_some_and(|drawn| drawn.ends().is_none()) {
+        return None;
+    }
+    match &comparison.fleet {
+        Some(fleet) => Some((fleet.ends, true)),
+        None => Some((drawn?.ends()?, false)),
     }
 }
 
@@ -189,26 +196,27 @@ fn difference(comparison: &Comparison, baseline: &RunSummary, percent: f64) -> S
         UNCHANGED => "the car unchanged".to_owned(),
         _ => format!("the {}", baseline.label()),
     };
-    let difference = against(percent, interval(comparison), &other);
+    let range = interval(comparison);
+    let difference = against(percent, range.map(|(ends, _)| ends), &other);
     let kind = likeness(comparison);
-    let known = match &comparison.interval {
-        Some(drawn) => match drawn.ends() {
-            Some(ends) => format!(
-                "with the uncertain inputs varied 90 % of {} runs give {}, the error of the model not included",
-                drawn.draws,
-                level(ends)
-            ),
-            None => format!(
-                "no range can be given: {}",
-                drawn.failures_in_words().unwrap_or_default()
-            ),
-        },
-        None => match &comparison.fleet {
-            Some(range) => format!(
-                "90 % range {}, by the error of the model on {} measured cars",
-                level(range.ends),
-                range.cars
-            ),
+    let drawn = comparison.interval.as_ref();
+    let inputs = drawn.and_then(|drawn| Some((drawn.draws, level(drawn.ends()?))));
+    let known = match (&comparison.fleet, range, inputs) {
+        (Some(fleet), Some((ends, _)), inputs) => {
+            let inputs = inputs.map_or_else(String::new, |(_, ends)| {
+                format!("; the uncertain inputs alone give {ends}")
+            });
+            format!(
+                "90 % range {}, by the error of the model on {} measured cars{inputs}",
+                level(ends),
+                fleet.cars
+            )
+        }
+        (None, Some(_), Some((draws, ends))) => {
+            format!("with the uncertain inputs varied 90 % of {draws} runs give {ends}")
+        }
+        _ => match drawn.and_then(DrawnDifference::failures_in_words) {
+            Some(words) => format!("no range can be given: {words}"),
             None => "how sure that is, no measured cars tell".to_owned(),
         },
     };
@@ -267,16 +275,12 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         baseline: baseline.label().to_owned(),
         title: format!("{}{}", baseline.title, likeness(comparison)),
         files: comparison.fuel_percent,
-        drawn: comparison
-            .interval
-            .as_ref()
-            .filter(|drawn| drawn.ends().is_some())
-            .map(|drawn| drawn.percent)
-            .or_else(|| {
-                let fleet = comparison.fleet.as_ref()?;
-                Some([fleet.ends[0], comparison.fuel_percent?, fleet.ends[1]])
-            }),
-        is_by_cars: comparison.interval.is_none(),
+        drawn: match (interval(comparison), &comparison.interval) {
+            (Some((_, false)), Some(drawn)) => Some(drawn.percent),
+            (Some(([low, high], _)), _) => comparison.fuel_percent.map(|own| [low, own, high]),
+            (None, _) => None,
+        },
+        is_by_cars: comparison.fleet.is_some(),
         published: published(summary, &baseline.vehicle),
     };
     let rows: Vec<Against> = baselines.iter().zip(&summary.comparison).map(row).collect();
