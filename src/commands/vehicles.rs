@@ -229,9 +229,10 @@ pub fn load(
     // A change is compared with the car of the file, unless that is no whole car without it.
     let is_changed = car.lubricant.is_some() || !car.set.is_empty();
     let is_wanted = baselines == Baselines::OfFile && !comparison.has_none();
-    let unchanged = (is_changed && is_wanted && setup.is_some())
+    let unchanged = (is_changed && is_wanted)
         .then(|| setup::load(&car.vehicle, &baseline).ok())
-        .flatten();
+        .flatten()
+        .filter(|before| setup.as_ref().is_some_and(|after| differs(before, after)));
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
     let has_unchanged = unchanged.is_some();
     loaded.extend(unchanged.map(|mut setup| {
@@ -276,6 +277,19 @@ pub fn load(
         });
     }
     vehicles
+}
+
+/// True if two readings of a car differ in more than what its twin is derived with.
+fn differs(before: &Setup, after: &Setup) -> bool {
+    let values = |setup: &Setup| -> Vec<(String, String)> {
+        let own = setup
+            .keys
+            .iter()
+            .filter(|info| !info.key.starts_with("twin."));
+        own.map(|info| (info.key.clone(), info.value.clone()))
+            .collect()
+    };
+    values(before) != values(after)
 }
 
 /// Cycle for the subject: its class selects the WLTC.

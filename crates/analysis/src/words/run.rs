@@ -463,6 +463,10 @@ fn against(
         _ if is_change => 2,
         _ => 1,
     };
+    let left_out = match drawn.map_or(0, |of| of.left_out) {
+        0 => String::new(),
+        n => format!("; {n} left out"),
+    };
     let range = match (fleet, inputs) {
         (Some(of), inputs) => {
             let range = match explained_fleet {
@@ -471,16 +475,12 @@ fn against(
             };
             let inputs = inputs.map_or_else(String::new, |(of, ends)| {
                 let (ends, more, all) = (between(ends, "%"), of.more, of.draws);
-                format!("; uncertain inputs alone {ends}, more in {more} of {all} runs")
+                format!("; uncertain inputs alone {ends}, more in {more} of {all} runs{left_out}")
             });
             range + &inputs
         }
         (None, Some((of, ends))) => {
             let (ends, draws, more) = (between(ends, "%"), of.draws, of.more);
-            let left_out = match of.left_out {
-                0 => String::new(),
-                n => format!("; {n} left out"),
-            };
             let runs = match explained {
                 false => format!("{draws} runs with uncertain inputs varied"),
                 true => format!("{draws} runs"),

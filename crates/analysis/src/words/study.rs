@@ -113,7 +113,7 @@ fn by_cars(of: &Comparison, outline: &StudyManifest) -> Option<String> {
         range.ends[1] = high.ends[1];
     }
     Some(format!(
-        "Computed cars are not measured ones: the difference is {}.",
+        "Computed cars are not measured ones: the difference has a {}.",
         difference_of_cars(&range?)
     ))
 }

@@ -23,7 +23,7 @@ const OPTIONS: (usize, usize) = (4, 2);
 /// Minimum change of the minimum clamp safety that is mentioned.
 const SAFETY: f64 = 0.05;
 
-/// Minimum time in which a floor decides the pressure that is mentioned, s.
+/// Minimum time, s, in which a floor decides the pressure of a change and not that of the car as it is.
 const FLOOR_S: f64 = 60.0;
 
 /// Minimum share of the variance of a change that is mentioned.
@@ -364,7 +364,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
             ratio(own.reference_worst)
         )
     });
-    let floor = row.effect(FLOOR).filter(|own| own.median > FLOOR_S);
+    let floor = row.effect(FLOOR).filter(|own| own.change > FLOOR_S);
     let floor = floor.map(|own| {
         format!(
             "for {} of {} the hydraulics' least pressure sets the clamp, not its law",

@@ -228,7 +228,7 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     let is_known = !known.is_empty();
     list.extend(known);
     list.extend(match found.studies.iter().find(has_interval) {
-        None => (!is_known).then(|| by_cars(&labelled).unwrap_or_else(|| none.to_owned())),
+        None => by_cars(&labelled).or_else(|| (!is_known).then(|| none.to_owned())),
         Some(study) => {
             let unfinished = study.unfinished();
             unfinished.map(|text| format!("Its interval is preliminary: {text}."))
