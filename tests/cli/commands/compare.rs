@@ -143,7 +143,7 @@ fn runs_with_start_stop_are_reported_and_compared() {
         assert_eq!(has_row, out == "stops", "{}", stdout(&output));
     }
     for words in [
-        &["report", "stops", "--full"][..],
+        &["report", "stops", "--stored", "--full"][..],
         &["compare", "plain", "stops"],
     ] {
         let output = run_in(dir.path(), words);

@@ -250,7 +250,7 @@ fn a_cycle_in_another_unit_is_doubted_in_the_first_line() {
     ]);
     assert_eq!(driven.status.code(), Some(0));
     assert_eq!(
-        run(&["report", &at("made"), "--out", &at("page.html")])
+        run(&["report", &at("made"), "--stored", "--out", &at("page.html")])
             .status
             .code(),
         Some(0)

@@ -264,7 +264,10 @@ fn a_report_draws_the_log_next_to_the_computed_car() {
         .unwrap();
     let series = fuel["series"].as_array().unwrap();
     assert!((200..=300).contains(&series.len()), "{}", series.len());
-    done(dir.path(), &["report", "again", "--out", "page.html"]);
+    done(
+        dir.path(),
+        &["report", "again", "--stored", "--out", "page.html"],
+    );
     let page = fs::read_to_string(dir.path().join("page.html")).unwrap();
     for part in ["The log next to the computed car", "Transmission sump"] {
         assert!(page.contains(part), "{part}");

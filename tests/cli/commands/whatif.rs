@@ -130,7 +130,7 @@ fn a_report_is_driven_again_with_the_cars_of_its_run() {
     ];
     let driven = run_in(dir.path(), &[&run[..], &more[..]].concat());
     assert_eq!(driven.status.code(), Some(0), "{}", stderr(&driven));
-    let report = ["report", "cold", "--live", "--out", "cold.html"];
+    let report = ["report", "cold", "--stored", "--live", "--out", "cold.html"];
     let made = run_in(dir.path(), &report);
     assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
     let page = fs::read_to_string(dir.path().join("cold.html")).unwrap();
