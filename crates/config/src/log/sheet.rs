@@ -66,7 +66,9 @@ impl Separator {
 
 /// A cell without a value, as instruments write it.
 pub(super) fn is_missing(cell: &str) -> bool {
-    const WORDS: [&str; 24] = [
+    const WORDS: [&str; 26] = [
+        "<na>",
+        "nat",
         "err",
         "error",
         "#err",
