@@ -83,6 +83,7 @@ fn in_time(samples: &Samples, resolution_m_s: f64) -> Likeness {
     }
     let own = seconds(samples, duration as usize + 1);
     let of_name = |name: &&'static str| of_seconds(name, duration as usize);
+    let mut like: Option<Likeness> = None;
     for cycle in names().iter().filter_map(of_name) {
         for trace in [Some(&cycle.manual), cycle.automatic.as_ref()]
             .into_iter()
@@ -107,12 +108,15 @@ fn in_time(samples: &Samples, resolution_m_s: f64) -> Likeness {
                 continue;
             }
             let other = seconds(&theirs, own.len().min(trace.duration_s() as usize + 1));
-            if let Some(found) = compared(cycle, &own, &other, resolution_m_s) {
-                return found;
+            // Of two cycles of one family the one that it is goes first.
+            match compared(cycle, &own, &other, resolution_m_s) {
+                Some(found) if found.is_exact && found.doubt.is_none() => return found,
+                Some(found) => like = like.or(Some(found)),
+                None => {}
             }
         }
     }
-    Likeness::default()
+    like.unwrap_or_default()
 }
 
 fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> Option<Likeness> {

@@ -93,9 +93,12 @@ pub(crate) fn treat(
     }
     own.limits();
     let mut resolution = None;
+    // The rows between those of a shipped cycle may be held, too.
+    if raster.is_some() {
+        own.held();
+    }
     if !is_exact {
         if raster.is_some() {
-            own.held();
             resolution = Resolution::of(&own.samples.time_s, &own.samples.speed_m_s);
         }
         own.gaps(raster, resolution);

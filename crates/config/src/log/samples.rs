@@ -8,8 +8,9 @@ use cvtcycle_model::cycle::is_standstill;
 const SPIKE_M_S2: f64 = 4.0;
 /// Longest spike, samples and s.
 const SPIKE: (usize, f64) = (3, 3.0);
-/// A signal that is lost falls and rises faster, m/s2, and is away for less, s, the length of a gap that is no gap.
-const LOST: (f64, f64) = (12.0, 10.0);
+/// A signal that is lost falls from such a speed, m/s, and rises to it, faster, m/s2, and is away for less, s, the length of a gap that is no gap: no car stops
+/// and starts again like that.
+const LOST: (f64, f64, f64) = (2.0, 4.5, 10.0);
 /// Values of a channel that is held, at least.
 const HELD: usize = 20;
 /// Rows of a recording at least, and the share of its steps that are not longer than so many medians.
@@ -291,13 +292,13 @@ impl Samples {
     /// Length of a loss of the signal behind a row: the speed is 0 at once, and as high as before at once.
     fn lost(&self, k: usize) -> Option<usize> {
         let before = self.speed_m_s[k];
-        if !is_standstill(self.speed_m_s[k + 1]) || self.accel(k) > -LOST.0 {
+        if before < LOST.0 || !is_standstill(self.speed_m_s[k + 1]) || self.accel(k) > -LOST.1 {
             return None;
         }
         let end = (k + 2..self.time_s.len()).find(|at| !is_standstill(self.speed_m_s[*at]))?;
         let is_back =
-            self.accel(end - 1) > LOST.0 && (self.speed_m_s[end] - before).abs() < 0.3 * before;
-        (is_back && self.time_s[end] - self.time_s[k] <= LOST.1 + self.step(k))
+            self.accel(end - 1) > LOST.1 && (self.speed_m_s[end] - before).abs() < 0.3 * before;
+        (is_back && self.time_s[end] - self.time_s[k] <= LOST.2 + self.step(k))
             .then_some(end - 1 - k)
     }
 }

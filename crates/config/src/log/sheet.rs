@@ -332,10 +332,12 @@ fn separator(lines: &[(usize, &str)]) -> Option<(Separator, &'static str, usize)
         else {
             continue;
         };
-        let names = cells
-            .iter()
-            .find(|cells| !cells.iter().any(|cell| is_value(cell)) && cells.len() + 1 >= count);
-        let has_name = names.is_some_and(|names| names.len() == count && names.last() != Some(&""));
+        // A line of names as long as the rows says that their last cell is one of theirs.
+        let has_name = cells.iter().any(|cells| {
+            cells.len() == count
+                && cells.last() != Some(&"")
+                && !cells.iter().any(|cell| is_value(cell))
+        });
         let width = count - usize::from(trailing > 0 && 10 * trailing >= 9 * rows && !has_name);
         if !(2..=MAX_COLUMNS).contains(&width) {
             continue;

@@ -230,9 +230,11 @@ fn figures(text: &str) -> Option<f64> {
         _ => format!("0.{digits}").parse::<f64>().ok(),
     };
     match whole.len() {
-        6 => {
-            let pair = |at: usize| whole[at..at + 2].parse::<f64>().ok();
-            let (hours, minutes, seconds) = (pair(0)?, pair(2)?, pair(4)?);
+        // A workbook takes the first zero away.
+        5 | 6 => {
+            let number: u32 = whole.parse().ok()?;
+            let parts = [number / 10_000, number / 100 % 100, number % 100];
+            let [hours, minutes, seconds] = parts.map(f64::from);
             let is_clock = hours < 24.0 && minutes < 60.0 && seconds < 60.0;
             let seconds = 3600.0 * hours + 60.0 * minutes + seconds + fraction(rest)?;
             is_clock.then_some(seconds)

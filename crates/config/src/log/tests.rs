@@ -190,6 +190,14 @@ fn tables_of_many_programs_are_the_drive() {
             .into_bytes(),
         ),
         (
+            "LabVIEW",
+            format!(
+                "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\nChannels\t1\t\n***End_of_Header***\t\t\n{}",
+                table("Time [s]\tSpeed [km/h]\tComment", |k, v| format!("{k}.000000\t{v:.2}\t"))
+            )
+            .into_bytes(),
+        ),
+        (
             "openpilot",
             table("logMonoTime,carState.vEgo", |k, v| {
                 format!("{},{:.6}", 123_456_789_000_u64 + 1_000_000_000 * k as u64, v / 3.6)
@@ -292,6 +300,15 @@ fn faults_of_recordings_have_a_remedy_each() {
     let cycle = read_with(text.as_bytes(), "").unwrap();
     repair(&cycle, "held");
     assert!(difference(&cycle) < 1e-6, "{}", difference(&cycle));
+    // The same of a shipped cycle, whose values at whole seconds are its own.
+    let udds = embedded("udds").unwrap();
+    let mut text = "Time [s],Speed [km/h]\n".to_owned();
+    for (k, own) in udds.manual.intervals.iter().enumerate() {
+        for part in 0..10 {
+            let _ = writeln!(text, "{k}.{part},{:.2}", 3.6 * own.start_speed_m_s);
+        }
+    }
+    repair(&read_with(text.as_bytes(), "").unwrap(), "held");
     let fast = (30..speeds.len() - 30)
         .max_by(|a, b| speeds[*a].total_cmp(&speeds[*b]))
         .unwrap();
