@@ -279,11 +279,18 @@ impl Reader<'_, '_> {
             }
             false => {
                 let message = format!("the time falls {}", times(falls.len()));
-                Problem::conflict(message)
+                let problem = Problem::conflict(message)
                     .allowed("more than in the row above")
                     .hint("sort the rows, or let the repair `sort` do it")
-                    .settings(&[Setting::Repair])
-                    .repair("sort")
+                    .settings(&[Setting::Repair]);
+                // A column that falls and comes back to its values is no time.
+                let mut sorted = samples.time_s.clone();
+                sorted.sort_by(f64::total_cmp);
+                let doubled = sorted.windows(2).filter(|pair| pair[1] <= pair[0]).count();
+                match 5 * doubled < sorted.len() {
+                    true => problem.repair("sort"),
+                    false => problem,
+                }
             }
         };
         Refused::known(self.problem(line, problem.key("time")))
