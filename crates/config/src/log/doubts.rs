@@ -76,7 +76,7 @@ fn starts(samples: &Samples) -> Option<String> {
     let (time, speed) = (&samples.time_s, &samples.speed_m_s);
     let mut gains: Vec<f64> = Vec::new();
     for k in 1..time.len() {
-        if !(is_standstill(speed[k - 1]) && !is_standstill(speed[k])) {
+        if !is_standstill(speed[k - 1]) || is_standstill(speed[k]) {
             continue;
         }
         let at = time[k - 1] + START.1;

@@ -238,14 +238,7 @@ impl<'t> Sheet<'t> {
         read_as.extend(head.words());
         let script = named_by_script(&lines[..first], width);
         let names = script.unwrap_or(head.names);
-        let last = text.lines().rev().filter(|line| !line.trim().is_empty());
-        let mut tail: Vec<Vec<&str>> = last
-            .take(TAIL)
-            .filter_map(|line| separator.cells(line))
-            .filter(|cells| trimmed(cells, width).len() == width)
-            .map(|cells| trimmed(&cells, width).to_vec())
-            .collect();
-        tail.reverse();
+        let tail = last_rows(text, separator, width);
         Some(Sheet {
             text,
             separator,
@@ -300,6 +293,19 @@ impl<'t> Sheet<'t> {
     pub(super) fn text_of(line: &'t str, field: Field) -> &'t str {
         line.get(field.start..field.end).unwrap_or_default()
     }
+}
+
+/// Cells of the last rows.
+fn last_rows(text: &str, separator: Separator, width: usize) -> Vec<Vec<&str>> {
+    let lines = text.lines().rev().filter(|line| !line.trim().is_empty());
+    let mut rows: Vec<Vec<&str>> = lines
+        .take(TAIL)
+        .filter_map(|line| separator.cells(line))
+        .filter(|cells| trimmed(cells, width).len() == width)
+        .map(|cells| trimmed(&cells, width).to_vec())
+        .collect();
+    rows.reverse();
+    rows
 }
 
 /// Cells without an empty one behind the last separator.

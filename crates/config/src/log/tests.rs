@@ -384,7 +384,7 @@ fn doubts_come_with_the_drive() {
     );
     doubt(
         &(table("time_s,speed_kmh", |k, v| format!("{k},{v:.2}"))
-            + &table("", |k, v| format!("{},{v:.2}", 5000 + k)).trim_start()),
+            + table("", |k, v| format!("{},{v:.2}", 5000 + k)).trim_start()),
         "are these drives of their own?",
     );
     let slow = table("time_s,speed_kmh", |k, v| match k % 5 {

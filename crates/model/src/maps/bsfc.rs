@@ -124,9 +124,10 @@ impl BsfcMap {
     ) -> Result<Self, NoMap> {
         let (mut points, left_out) = table.points(basis)?;
         // Points that fill a grid but for the rounding of their numbers are one: triangles between a level and itself are none.
-        let near = is_grid(&points, ROUNDING)
-            .then_some(ROUNDING)
-            .unwrap_or(SAME);
+        let near = match is_grid(&points, ROUNDING) {
+            true => ROUNDING,
+            false => SAME,
+        };
         let speeds = levels(points.iter().map(|point| point.speed_rad_s), near);
         let loads = levels(points.iter().map(|point| point.bmep_pa), near);
         let place = |of: &Point| {
