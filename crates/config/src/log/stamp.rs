@@ -17,7 +17,7 @@ pub(super) enum Form {
 }
 
 /// Formats of dates with a time, as instruments and phones write them, without commas and names of zones ([`normal`]). Day and month of those with slashes
-/// are told apart by all stamps of a file ([`Form::of_all`]).
+/// are distinguished by all stamps of a file ([`Form::of_all`]).
 const FORMATS: [&str; 46] = [
     "%Y-%m-%dT%H:%M:%S%.f%:z",
     "%Y-%m-%dT%H:%M:%S%.f%z",
