@@ -633,26 +633,20 @@ fn a_repair_is_proposed_as_a_call() {
     rows.swap(30, 31);
     fs::write(&file, format!("time_s,speed_kmh\n{}\n", rows.join("\n"))).unwrap();
     let file = file.to_str().unwrap();
-    for (file, more, repair) in [
-        (file.to_owned(), &[][..], "sort"),
-        (path("k08_gap_at_speed.csv"), &[], "cut"),
-        (
-            path("k08_gap_at_speed.csv"),
-            &["--repair", "no-smooth"],
-            "no-smooth,cut",
-        ),
-        (
-            path("k08_gap_at_speed.csv"),
-            &["--repair=no-smooth"],
-            "no-smooth,cut",
-        ),
-    ] {
-        let output = run_of(&file, &[&["--baseline", "none"], more].concat());
+    let gap = path("k08_gap_at_speed.csv");
+    let cases: [(&str, &[&str], &str); 4] = [
+        (file, &[], "sort"),
+        (&gap, &[], "cut"),
+        (&gap, &["--repair", "no-smooth"], "no-smooth,cut"),
+        (&gap, &["--repair=no-smooth"], "no-smooth,cut"),
+    ];
+    for (file, more, repair) in cases {
+        let output = run_of(file, &[&["--baseline", "none"], more].concat());
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{text}");
         let line = text.lines().find(|line| line.starts_with("try: ")).unwrap();
         assert!(line.ends_with(&format!(" --repair {repair}")), "{line}");
-        let own = summary_of(&file, &["--baseline", "none", "--repair", repair]);
+        let own = summary_of(file, &["--baseline", "none", "--repair", repair]);
         assert!(fuel(&own).is_finite());
     }
 }

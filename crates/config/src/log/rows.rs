@@ -247,7 +247,7 @@ impl Reader<'_, '_> {
         let ends = falls.iter().copied().chain([samples.time_s.len()]);
         let starts = [0].into_iter().chain(falls.iter().copied());
         let lengths: Vec<usize> = starts.zip(ends).map(|(start, end)| end - start).collect();
-        let problem = match lengths.iter().all(|rows| *rows > 5) {
+        let problem = match lengths.iter().all(|rows| *rows > 5) && samples.falls_far(falls) {
             true if samples.is_clock_set(falls) => {
                 let message = format!(
                     "the time falls {} while the car drives on",

@@ -56,9 +56,19 @@ impl Samples {
             .then_some(step)
     }
 
+    /// True if the time falls by some steps each time: by one or two, rows are exchanged.
+    pub(super) fn falls_far(&self, falls: &[usize]) -> bool {
+        let steps = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+        let step = super::smooth::median(steps.filter(|step| *step > 0.0).collect());
+        let least = 2.5 * step.unwrap_or(0.0);
+        let mut all = falls.iter();
+        all.all(|k| self.time_s[k - 1] - self.time_s[*k] > least)
+    }
+
     /// True if the speed goes on where the time falls, in the middle of a drive: a clock that was set, and no other drive.
     pub(super) fn is_clock_set(&self, falls: &[usize]) -> bool {
         !falls.is_empty()
+            && self.falls_far(falls)
             && falls.iter().all(|k| {
                 let [before, after] = [self.speed_m_s[k - 1], self.speed_m_s[*k]];
                 !is_standstill(before)

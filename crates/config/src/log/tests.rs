@@ -332,6 +332,18 @@ fn faults_of_recordings_have_a_remedy_each() {
     let with_cut = Columns::default().with_repairs(crate::channel::Repairs::parse("cut").unwrap());
     let cycle = read_columns("log.csv", set.as_bytes(), &with_cut).unwrap();
     assert!(difference(&cycle) < 1e-6);
+    let turned = table("Time [s],Speed [km/h]", |k, v| match k {
+        _ if k == fast => format!("{},{:.2}\n{k},{v:.2}", k + 1, speeds[k + 1]),
+        _ if k == fast + 1 => "#".to_owned(),
+        _ => format!("{k},{v:.2}"),
+    });
+    let problems = read_with(turned.as_bytes(), "").unwrap_err();
+    let is_sort = |own: &crate::Problem| {
+        own.proposal
+            .as_ref()
+            .is_some_and(|own| own.repair == "sort")
+    };
+    assert!(problems.iter().any(is_sort), "{problems:?}");
     let cars = table("Time [s],plate,Speed [km/h]", |k, v| {
         format!("{k},AB,{v:.2}\n{k},CD,{:.2}", v * 0.97)
     });
