@@ -633,3 +633,62 @@ fn a_box_script_of_advisor_is_the_list_of_its_cells() {
     let divided = fuel(&car("justy.m", &with_drive, BOX, value, &[NO_LOAD]).unwrap());
     assert!((divided / list - 1.0).abs() < 1e-9, "{divided} {list}");
 }
+
+/// Truth: the list itself. Numbers of five figures fill the grid that they are from; a mean effective pressure next to its torque says nothing more; a
+/// consumption of g/hp-h under g/kWh makes an engine that there is not.
+#[test]
+fn rounded_numbers_and_a_second_load_are_the_map() {
+    let right = litres(&engine("a.csv", LIST).unwrap());
+    let rounded = |head: &str, row: &dyn Fn(&[f64; 3]) -> Vec<f64>| {
+        let mut text = format!("{head}\n");
+        for point in points() {
+            let cells: Vec<String> = row(&point).iter().map(|own| format!("{own:.5e}")).collect();
+            writeln!(text, "{}", cells.join(",")).unwrap();
+        }
+        text
+    };
+    let kw = |[rpm, nm, _]: &[f64; 3]| nm * rad_s(*rpm) / 1e3;
+    let horse = rounded("Speed [rpm],Power [hp],BSFC [g/kWh]", &|own| {
+        vec![own[0], kw(own) / 0.745_699_871_6, own[2]]
+    });
+    let german = rounded("n [1/min],Md [Nm],be [g/kWh]", &|own| own.to_vec());
+    let both = rounded("speed_rpm,bmep_bar,torque_nm,bsfc_g_kwh", &|own| {
+        vec![own[0], own[1] / 15.0, own[1], own[2]]
+    });
+    for (name, text) in [("horse", horse), ("german", german), ("both", both)] {
+        let own = litres(&engine("a.csv", &text).unwrap());
+        assert!(
+            (own / right - 1.0).abs() < 1e-4,
+            "{name}: {own} for {right}"
+        );
+    }
+    let wrong = rounded("speed_rpm,torque_nm,bsfc_g_kwh", &|own| {
+        vec![own[0], own[1], own[2] * 0.745_699_871_6]
+    });
+    let doubts = engine("a.csv", &wrong).unwrap().doubts();
+    assert!(
+        doubts.iter().any(|own| own.contains("best efficiency")),
+        "{doubts:?}"
+    );
+}
+
+/// Truth: the map by its ratio; speeds of both shafts in whole revolutions a minute give it again but for their rounding.
+#[test]
+fn a_ratio_of_two_rounded_speeds_is_one_ratio() {
+    let mut text =
+        "output_speed_rpm,input_speed_rpm,input_torque_nm,efficiency_percent\n".to_owned();
+    for line in JUSTY.lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        writeln!(
+            text,
+            "{:.1},{},{},{}",
+            row[1] / row[0],
+            row[1],
+            row[2],
+            row[3]
+        )
+        .unwrap();
+    }
+    let [a, b] = [JUSTY, &text].map(|text| litres(&whole_box("a.csv", text, &[]).unwrap()));
+    assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+}

@@ -33,9 +33,11 @@ mod sheet;
 mod slopes;
 mod smooth;
 mod stamp;
+#[cfg(test)]
+mod tests;
 mod text;
 
-pub(crate) use doubts::{Likeness, motions};
+pub(crate) use doubts::{Likeness, motions, steep};
 pub(crate) use repair::{Treated, treat};
 pub(crate) use rows::are_strange;
 pub(crate) use samples::Samples;
@@ -189,8 +191,8 @@ impl Reader<'_, '_> {
             chosen.times.len() + chosen.speeds.len(),
             &mut repairs,
         )?;
-        if filled.midnights() > 0 {
-            read_as.push("over midnight".to_owned());
+        if filled.begins_again() {
+            read_as.push("over midnight or the full hour".to_owned());
         }
         self.order(
             &mut samples,
@@ -236,6 +238,8 @@ impl Reader<'_, '_> {
             &treated.samples,
             &mut repairs,
         )?;
+        let doubt = grade.as_ref().and_then(|own| steep(own.iter().copied()));
+        treated.doubts.extend(doubt);
         let off = values(Quantity::EngineOff)
             .map(|own| held(own).iter().map(|flag| *flag > 0.5).collect());
         let engine_off: Option<Vec<bool>> = off.or_else(|| {

@@ -32,6 +32,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Text<'_>, Problem> {
         );
     }
     let (text, encoding) = decoded(bytes);
+    // A recorder that lost its power leaves zeros at the end.
+    let text = match text.ends_with('\0') {
+        true => Cow::Owned(text.trim_end_matches('\0').to_owned()),
+        false => text,
+    };
     if let Some(at) = text.find('\0') {
         let line = text[..at].matches('\n').count() + 1;
         return Err(Problem::syntax(format!(
