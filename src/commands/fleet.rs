@@ -119,6 +119,8 @@ struct FleetSummary {
     errors: Vec<GroupErrors>,
     pair_errors: Vec<PairErrors>,
     baselines: Vec<Baseline>,
+    /// How many cars the ranges hold that are made from the cars of other groups.
+    coverage: Vec<spread::Coverage>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     changes: Vec<ErrorChange>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -260,6 +262,7 @@ impl Execute for FleetArgs {
             errors: by_group(&entries, &figures, &fleet.groups),
             pair_errors: pair_errors(&pairs, &figures),
             baselines: baselines(&entries, leave_out),
+            coverage: spread::coverages(&entries, &pairs, &figures, leave_out.unwrap_or_default()),
             changes: changes(&before, &entries, &figures),
             fit,
         };

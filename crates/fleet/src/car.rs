@@ -177,7 +177,10 @@ fn unknown_columns(names: &[String], is_known: &dyn Fn(&str) -> bool) -> Vec<(St
     let options = new_car::NUMBERS.iter().map(|(name, _)| *name).chain(WORDS);
     let keys = catalogue::known_names().iter().map(String::as_str);
     let known: Vec<&str> = keys.chain(options).collect();
-    let near = |name: &String| did_you_mean(name, known.iter().copied()).unwrap_or_default();
+    let near = |name: &String| {
+        let others = known.iter().copied().filter(|known| known != name);
+        did_you_mean(name, others).unwrap_or_default()
+    };
     let unknown = names.iter().filter(|name| !is_known(name));
     unknown.map(|name| (name.clone(), near(name))).collect()
 }
@@ -268,7 +271,7 @@ impl Columns<'_> {
 
     /// The options of `new` that a row gives.
     fn answers(&self, row: &Row, options: &[(&str, &str)]) -> Result<Answers, String> {
-        let mut text = String::new();
+        let (mut text, mut empty) = (String::new(), Vec::new());
         for (option, template) in options {
             if let Some(value) = self.map.fill(template, &|name| self.cell(row, name))? {
                 debug_assert!(is_option(option), "checked with the map");
@@ -277,7 +280,24 @@ impl Columns<'_> {
                     option.replace('-', "_"),
                     toml::Value::String(value)
                 );
+            } else {
+                empty.push(*option);
             }
+        }
+        let has = |option: &str| {
+            let is_option = |(own, _): &(&str, &str)| *own == option;
+            options.iter().any(is_option) && !empty.contains(&option)
+        };
+        let is_needed = |option: &&&str| match **option {
+            _ if has("like") => false,
+            "mass" => true,
+            "displacement" | "power" => !has("engine-like"),
+            _ => false,
+        };
+        if let Some(option) = empty.iter().find(is_needed) {
+            return Err(format!(
+                "{option}: the cell is empty, and the value of a class is that of another car; fill it, or remove the row"
+            ));
         }
         let mut answers = Answers {
             title: row.cells[self.id].clone(),

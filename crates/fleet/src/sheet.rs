@@ -5,6 +5,9 @@ use cvtcycle_config::{Problem, Problems, decode};
 /// Most rows of a table.
 pub const MAX_ROWS: usize = 100_000;
 
+/// Help where there are no rows.
+const HINT: &str = "a row is a car, below a line of column names";
+
 /// A table whose cells are text.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -44,6 +47,12 @@ impl Sheet {
     /// # Errors
     /// Text in an unknown encoding, no rows, columns without a name or with the name of another one.
     pub fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Problems> {
+        if bytes.iter().all(u8::is_ascii_whitespace) {
+            return Err(Problem::missing("the file is empty")
+                .in_file(file)
+                .hint(HINT)
+                .into());
+        }
         let text = decode(file, bytes)?;
         let head = text
             .lines()
@@ -75,9 +84,17 @@ impl Sheet {
             rows: Vec::new(),
             refused: Vec::new(),
         };
+        let (mut line, mut counted) = (1, 0);
         for record in reader.records() {
             let record = record.map_err(unreadable)?;
-            let line = record.position().map_or(0, csv::Position::line);
+            // The position of a record is before the line feed of the line above it, where lines end with CR LF.
+            let at = record.position().map_or(0, csv::Position::byte) as usize;
+            let behind = text.as_bytes().get(at..).unwrap_or_default();
+            let ends = behind.iter().take_while(|b| matches!(b, b'\r' | b'\n'));
+            let begin = at + ends.count();
+            let passed = text.as_bytes().get(counted..begin).unwrap_or_default();
+            line += passed.iter().filter(|b| **b == b'\n').count() as u64;
+            counted = begin;
             let cells: Vec<String> = record.iter().map(str::to_owned).collect();
             if cells.iter().all(String::is_empty) {
                 continue;
@@ -107,7 +124,7 @@ impl Sheet {
         if sheet.rows.is_empty() && sheet.refused.is_empty() {
             return Err(Problem::missing("the table has no rows")
                 .in_file(file)
-                .hint("a row is a car, below a line of column names")
+                .hint(HINT)
                 .into());
         }
         Ok(sheet)
@@ -173,4 +190,27 @@ fn check_names(file: &str, names: &[String]) -> Result<(), Problems> {
         }
     }
     problems.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Truth: an editor's line numbers of the same text, whatever ends its lines; an empty line and a quoted line end count.
+    #[test]
+    fn val_lines_are_those_of_an_editor() {
+        let text = "carid,mass\na,1\n\n\"b\nb\",2\nc,3\nd\n";
+        for text in [text.to_owned(), text.replace('\n', "\r\n")] {
+            let sheet = Sheet::read("t.csv", text.as_bytes()).expect("a table");
+            let lines: Vec<u64> = sheet.rows.iter().map(|row| row.line).collect();
+            assert_eq!(lines, [2, 4, 6], "{text:?}");
+            assert_eq!(sheet.refused[0].line, 7, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_blanks_is_no_table() {
+        let problems = Sheet::read("t.csv", b" \r\n").expect_err("no table");
+        assert!(problems.iter().all(|problem| problem.hint == HINT));
+    }
 }
