@@ -138,14 +138,17 @@ fn the_plan_of_five_fluids_is_one_matrix() {
             .iter()
             .all(|row| row[0].as_f64() == Some(0.0))
     );
-    let note = found["notes"][0].as_str().unwrap();
-    assert!(
-        note.contains("has the friction of the vehicle's own one"),
-        "{note}"
-    );
+    // The blends have friction of their own on pulleys, so that the comparison moves more than viscosity.
+    let notes: Vec<&str> = notes.iter().filter_map(Value::as_str).collect();
+    let own = "has the friction of the vehicle's own one";
+    assert!(!notes.iter().any(|note| note.contains(own)), "{notes:?}");
+    let of_blends = "oil cvt_blend_low_friction, cvt_blend_high_friction: friction not measured";
+    let blends = notes.iter().find(|note| note.starts_with(of_blends));
+    let blends = blends.unwrap_or_else(|| panic!("{notes:?}"));
+    assert!(blends.contains("bands on shoulders") && !blends.contains("pulleys"));
     let shown = stdout(&run(&["study", "fluids_by_ambient"]));
     assert!(
-        shown.contains("* least of its row") && shown.contains("note: oil: "),
+        shown.contains("* least of its row") && shown.contains("note: oil "),
         "{shown}"
     );
 }
