@@ -84,9 +84,9 @@ pub struct RunArgs {
     output: OutputArgs,
 }
 
-/// Number of draws of a change without --draws: whole groups of runs that are driven side by side, within some hundredths of a second. The first lines
+/// Number of draws of a change without --draws: whole groups of runs that are driven side by side, and enough that runs which agree show 90 % of all. The first lines
 /// say how many would give the ends a range of their own (ES-3).
-const DRAWS_OF_CHANGE: u64 = 32;
+const DRAWS_OF_CHANGE: u64 = 40;
 
 /// A summary with the answer of the draws.
 #[derive(Serialize)]

@@ -246,7 +246,7 @@ fn axes_series_and_names_can_be_read_as_text() {
                 "Time [s]",
             ],
         ),
-        ("losses", &["Loss power [W]", "Time [s]"]),
+        ("losses", &["Energy lost, as fuel [L/100 km]", "Time [s]"]),
         (
             "operating_points",
             &[
@@ -391,7 +391,7 @@ fn cells_hold_all_time_in_which_the_engine_runs() {
         (rows(400, 0.1, true), 40.0),
     ] {
         let history = history(true, &rows, &phases());
-        let Picture { svg, table } = operating_points(&[run("car", &history)]);
+        let Picture { svg, table, .. } = operating_points(&[run("car", &history)]);
         let seconds: f64 = table
             .rows
             .iter()

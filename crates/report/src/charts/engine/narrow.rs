@@ -28,7 +28,9 @@ impl Chart {
         if let Some(other) = &self.other {
             return other.narrowed();
         }
-        if !self.panels.iter().all(|panel| panel.framed) {
+        let is_free =
+            |panel: &Panel| !panel.framed || panel.pitch.is_none() && has_left_labels(panel);
+        if self.panels.iter().any(is_free) {
             return None;
         }
         let room = WIDTH - 2.0 * EDGE;
@@ -42,7 +44,8 @@ impl Chart {
         };
         let (mut top, mut named) = (chart.head_height(), Vec::new());
         for panel in &self.panels {
-            top += if panel.heading.is_empty() { 4.0 } else { 22.0 };
+            let is_headed = !panel.heading.is_empty() || has_labels_above(panel);
+            top += if is_headed { 22.0 } else { 4.0 };
             let (mut own, names) = match panel.pitch {
                 Some(pitch) => (rows(panel, pitch, top), Vec::new()),
                 None => plot(panel, top),
@@ -74,10 +77,32 @@ impl Chart {
         let foot = self.foot.iter().map(|block| block.content.clone());
         let named = (!named.is_empty()).then(|| Content::Legend(String::new(), named));
         for content in named.into_iter().chain(legends).chain(foot) {
-            chart = chart.foot(Block::new((EDGE, room), content));
+            // The labels at the ends of a key are wider than its strip.
+            let place = match content {
+                Content::Key(_) => (EDGE + 10.0, room - 24.0),
+                _ => (EDGE, room),
+            };
+            chart = chart.foot(Block::new(place, content));
         }
         Some(chart)
     }
+}
+
+/// True if texts have their place left of a plot, where there is no room.
+fn has_left_labels(panel: &Panel) -> bool {
+    labels(panel).any(|label| label.at.x.is_infinite() && label.at.x < 0.0 && label.at.dx < -LEFT)
+}
+
+/// True if texts have their place above a plot.
+fn has_labels_above(panel: &Panel) -> bool {
+    labels(panel).any(|label| label.at.y.is_infinite() && label.at.y > 0.0 && label.at.dy < 0.0)
+}
+
+fn labels(panel: &Panel) -> impl Iterator<Item = &Label> {
+    panel.items.iter().filter_map(|item| match &item.shape {
+        Shape::Label(label) => Some(label),
+        _ => None,
+    })
 }
 
 /// Panel of a plot with a vertical axis, and the legend of lines whose names have no room at their ends.
@@ -111,12 +136,21 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
     };
     let tall = panel.rect.height().min(TALL);
     own.rect = Rect::new(LEFT, top, WIDTH - LEFT - beyond, tall);
-    own.x = thinned(&panel.x, own.rect.width());
+    own.x = thinned(&panel.x, own.rect.width(), (LEFT, beyond));
     let scale = own.rect.width() / panel.rect.width();
+    let scale_y = tall / panel.rect.height();
     own.items.retain_mut(|item| match &mut item.shape {
         Shape::Label(label) if label.class == "phase" => {
             label.room *= scale;
             text_width(&label.text, label.size) <= label.room
+        }
+        // A place within the plot in pixels from its upper left corner.
+        Shape::Label(label)
+            if label.at.x.is_infinite() && label.at.y.is_infinite() && label.at.dy > 0.0 =>
+        {
+            label.at.dx *= scale;
+            label.at.dy *= scale_y;
+            true
         }
         _ => true,
     });
@@ -145,7 +179,7 @@ fn rows(panel: &Panel, pitch: f64, top: f64) -> Panel {
         }
         _ => true,
     });
-    let room = WIDTH - 2.0 * EDGE;
+    let room = WIDTH - 2.0 * EDGE - RIGHT - 8.0;
     let text = |name: &Option<Label>| {
         let name = name.as_ref();
         name.map_or_else(Vec::new, |name| lines(&name.text, name.size, room))
@@ -162,14 +196,14 @@ fn rows(panel: &Panel, pitch: f64, top: f64) -> Panel {
     // The middle of a row is that of its bars, below the names.
     let high = -(PAD + 0.5 * above) / tall;
     own.y = Axis::bare(high + own.rect.height() / tall, high);
-    own.x = thinned(&without_room(panel), own.rect.width());
+    own.x = thinned(&without_room(panel), own.rect.width(), (EDGE + 4.0, RIGHT));
     for (k, (name, texts)) in names.into_iter().zip(texts).enumerate() {
         let Some(name) = name else { continue };
         let first = own.rect.top + PAD + k as f64 * tall + above - LINE * texts.len() as f64;
         for (line, text) in texts.into_iter().enumerate() {
             let y = first + LINE * (line + 1) as f64 - 2.0 - own.rect.top;
             let mut label = name.clone();
-            label.at = at(f64::NEG_INFINITY, f64::INFINITY).shift(0.0, y);
+            label.at = at(f64::NEG_INFINITY, f64::INFINITY).shift(4.0, y);
             (label.text, label.anchor, label.ground) = (text, "start", true);
             (label.cut, label.room) = (Cut::End, f64::INFINITY);
             own.label(label);
@@ -223,9 +257,15 @@ fn abscissae(items: &[Item], places: &mut Vec<f64>) {
     }
 }
 
-/// An axis whose labels have room on a width: every second one, every third one, ...
-fn thinned(axis: &Axis, width: f64) -> Axis {
+/// An axis whose labels have room on a width, and beyond its ends: every second one, every third one, ...
+fn thinned(axis: &Axis, width: f64, (left, right): (f64, f64)) -> Axis {
     let mut axis = axis.clone();
+    let mut ticks = std::mem::take(&mut axis.ticks);
+    ticks.retain(|(tick, text)| {
+        let (middle, half) = (axis.share(*tick) * width, 0.5 * text_width(text, TEXT));
+        middle - half > -left && middle + half < width + right
+    });
+    axis.ticks = ticks;
     let widest = axis
         .ticks
         .iter()

@@ -172,7 +172,7 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
     let most = lost.iter().filter_map(|of| of.last()?.last().copied());
     let most = most.fold(0.0, f64::max);
     let digits = decimals(most);
-    let y_title = format!("Lost so far [{}]", fuel.unit);
+    let y_title = format!("Energy lost, as fuel [{}]", fuel.unit);
     let y = Axis::round(&y_title, [0.0, most].into_iter(), 6);
     let several = cars.len() > 1;
     let tall = TALL[usize::from(several)];
@@ -223,7 +223,7 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
         last.below = bottom - last.rect.bottom + 8.0;
     }
     let subject = match runs {
-        [run] => format!("{}; energy of the losses as fuel", run.name),
+        [run] => run.name.to_owned(),
         _ => "Energy of the losses as fuel, one scale".to_owned(),
     };
     Chart::new(title(&cars, &fuel, digits), subject, PLOT_LEFT)
