@@ -7,6 +7,8 @@ use super::text::{Cut, text_width};
 
 /// Minimum distance of two names, pixels.
 const APART: f64 = 14.0;
+/// Maximum width of a name over cells, pixels.
+pub(crate) const ON_CELLS: f64 = 180.0;
 /// Size of a name, pixels.
 const TEXT: f64 = 11.0;
 /// Distance from the frame within which names are written beyond it, pixels.
@@ -40,6 +42,9 @@ pub(super) fn labels(panel: &Panel) -> Vec<Label> {
         let x = if is_beyond { panel.rect.right } else { x };
         let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);
         let mut label = Label::new(place, end.text).colour(end.colour);
+        if panel.on_cells {
+            label = label.cut(Cut::End, ON_CELLS);
+        }
         label.ground = panel.on_cells && !is_beyond;
         label
     };

@@ -45,9 +45,9 @@ impl Chart {
         let (mut top, mut named) = (chart.head_height(), Vec::new());
         for panel in &self.panels {
             let is_headed = !panel.heading.is_empty() || has_labels_above(panel);
-            top += if is_headed { 22.0 } else { 4.0 };
+            top += if is_headed { 22.0 } else { 9.0 };
             let (mut own, names) = match panel.pitch {
-                Some(pitch) => (rows(panel, pitch, top), Vec::new()),
+                Some(pitch) => (rows(panel, &self.panels, (pitch, top)), Vec::new()),
                 None => plot(panel, top),
             };
             let title = match panel.x_labels {
@@ -70,7 +70,17 @@ impl Chart {
             named.extend(names);
             chart.panels.push(own);
         }
-        named.dedup_by(|a, b| a.name == b.name);
+        // A legend that has a name already has its line as well.
+        let has = |name: &str, content: &Content| match content {
+            Content::Legend(_, entries) => entries.iter().any(|entry| entry.name == name),
+            _ => false,
+        };
+        named.retain(|entry: &Entry| {
+            !self
+                .foot
+                .iter()
+                .any(|block| has(&entry.name, &block.content))
+        });
         let legends = self.sides.iter();
         let legends =
             legends.map(|side| Content::Legend(side.heading.clone(), side.entries.clone()));
@@ -154,13 +164,20 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
         }
         _ => true,
     });
-    let entry =
-        |end: &super::ends::End| Entry::line(stroke(end.colour, 2.0, &[]), end.text.as_str());
+    // Lines of several panels may have one name.
+    let of = panel.heading.split(':').next().unwrap_or_default();
+    let entry = |end: &super::ends::End| {
+        let name = match of {
+            "" => end.text.clone(),
+            of => format!("{of}: {}", end.text),
+        };
+        Entry::line(stroke(end.colour, 2.0, &[]), name)
+    };
     (own, legend.iter().map(entry).collect())
 }
 
 /// Panel of rows: the labels of a row are one text above its bars.
-fn rows(panel: &Panel, pitch: f64, top: f64) -> Panel {
+fn rows(panel: &Panel, all: &[Panel], (pitch, top): (f64, f64)) -> Panel {
     let mut own = panel.clone();
     let count = ((panel.y.low - panel.y.high - 2.0 * PAD / pitch).round()).max(1.0) as usize;
     let row_of = |place: &Place| (0..count).find(|k| (place.y - row_middle(*k)).abs() < 1e-9);
@@ -196,7 +213,11 @@ fn rows(panel: &Panel, pitch: f64, top: f64) -> Panel {
     // The middle of a row is that of its bars, below the names.
     let high = -(PAD + 0.5 * above) / tall;
     own.y = Axis::bare(high + own.rect.height() / tall, high);
-    own.x = thinned(&without_room(panel), own.rect.width(), (EDGE + 4.0, RIGHT));
+    own.x = thinned(
+        &without_room(panel, all),
+        own.rect.width(),
+        (EDGE + 4.0, RIGHT),
+    );
     for (k, (name, texts)) in names.into_iter().zip(texts).enumerate() {
         let Some(name) = name else { continue };
         let first = own.rect.top + PAD + k as f64 * tall + above - LINE * texts.len() as f64;
@@ -227,11 +248,13 @@ fn join(name: &mut Option<Label>, label: &Label) {
     }
 }
 
-/// The axis of a panel without the room that labels have at the ends of bars.
-fn without_room(panel: &Panel) -> Axis {
+/// The axis of a panel without the room that labels have at the ends of bars; panels of one scale keep one.
+fn without_room(panel: &Panel, all: &[Panel]) -> Axis {
     let mut x = panel.x.clone();
+    let ends = |panel: &Panel| [panel.x.low, panel.x.high].map(f64::to_bits);
+    let alike = all.iter().filter(|other| ends(other) == ends(panel));
     let mut places = Vec::new();
-    abscissae(&panel.items, &mut places);
+    alike.for_each(|other| abscissae(&other.items, &mut places));
     let inner = places
         .into_iter()
         .filter(|place| (x.low..=x.high).contains(place));

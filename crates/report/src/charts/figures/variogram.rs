@@ -2,8 +2,8 @@
 
 use super::{TOP, drive_subtitle};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, End, Entry, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape, Stroke,
-    Style, WIDTH, cell, stroke, text_width,
+    Axis, Block, Chart, End, Entry, ON_CELLS, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
+    Stroke, Style, WIDTH, cell, stroke, text_width,
 };
 use crate::charts::grids::Density;
 use crate::charts::picture::{Picture, PictureTable};
@@ -38,8 +38,7 @@ pub struct GuideLine {
 }
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
-/// Maximum room right of the panel for names of lines that leave there, and above it, pixels.
-const NAMES: f64 = 190.0;
+/// Room above the panel for names of lines that leave there, pixels.
 const ABOVE: f64 = 16.0;
 /// Size of a name, pixels.
 const NAME: f64 = 11.0;
@@ -77,14 +76,14 @@ pub fn variogram(data: &Variogram) -> Picture {
     ));
     let names = |(name, points, line): &SeenLine| End {
         at: *points.last().unwrap_or(&(f64::NAN, f64::NAN)),
-        text: Cut::End.apply(name, NAME, NAMES - 10.0),
+        text: (*name).to_owned(),
         colour: line.colour,
     };
     let is_high = |end: &End| (end.at.1 - y.high).abs() < 1e-6 * y.high;
     let (above, at_right): (Vec<End>, Vec<End>) = seen.iter().map(names).partition(is_high);
     let room = at_right
         .iter()
-        .map(|end| text_width(&end.text, NAME) + 10.0);
+        .map(|end| text_width(&end.text, NAME).min(ON_CELLS) + 10.0);
     let wide = WIDE - room.fold(0.0, f64::max);
     let rect = Rect::new(PLOT_LEFT, TOP + ABOVE, wide, TALL);
     let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
@@ -105,7 +104,7 @@ pub fn variogram(data: &Variogram) -> Picture {
     }
     (panel.ends, panel.above, panel.on_cells) = (at_right, above, true);
     // A legend repeats names that were cut.
-    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > NAMES - 10.0;
+    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > ON_CELLS;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
     let drive = drive_subtitle(&data.subject, &data.conditions);
