@@ -100,7 +100,13 @@ impl Chart {
 
 /// True if texts have their place left of a plot, where there is no room.
 fn has_left_labels(panel: &Panel) -> bool {
-    labels(panel).any(|label| label.at.x.is_infinite() && label.at.x < 0.0 && label.at.dx < -LEFT)
+    labels(panel).any(|label| {
+        let wide = match label.anchor {
+            "end" => text_width(&label.text, label.size).min(label.room),
+            _ => 0.0,
+        };
+        label.at.x.is_infinite() && label.at.x < 0.0 && label.at.dx - wide < -LEFT
+    })
 }
 
 /// True if texts have their place above a plot.
@@ -149,6 +155,7 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
     own.x = thinned(&panel.x, own.rect.width(), (LEFT, beyond));
     let scale = own.rect.width() / panel.rect.width();
     let scale_y = tall / panel.rect.height();
+    let mut placed = Vec::new();
     own.items.retain_mut(|item| match &mut item.shape {
         Shape::Label(label) if label.class == "phase" => {
             label.room *= scale;
@@ -160,7 +167,18 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
         {
             label.at.dx *= scale;
             label.at.dy *= scale_y;
-            true
+            // Of two texts that would lie on each other the first one stays.
+            let wide = text_width(&label.text, label.size);
+            let (x, y) = (label.at.dx, label.at.dy);
+            let is_free = placed
+                .iter()
+                .all(|(other_x, other_y, other): &(f64, f64, f64)| {
+                    (x - other_x).abs() > 0.5 * (wide + other) || (y - other_y).abs() > LINE
+                });
+            if is_free {
+                placed.push((x, y, wide));
+            }
+            is_free
         }
         _ => true,
     });
