@@ -134,3 +134,28 @@ def test_bad_studies(tmp_path) -> None:
         cc.Study.from_toml(PLAN, seed=4).write_parts((0, 1), tmp_path / "a")
     with pytest.raises(cc.InputError, match="draws no samples"):
         cc.Study.from_toml(PLAN.replace("{ latin_hypercube = { samples = 40, seed = 3 } }", '"grid"').replace("distribution = { uniform = { low = 1000, high = 1400 } }", "values = [1000, 1400]"), samples=5)
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "cycle", "ambient", "baseline", "oil", "values"),
+    [
+        ("rover_216_cvt", "ece15", -10.0, "rover_216_5mt", None, {}),
+        ("rover_216_cvt", "ece15", 25.0, "rover_216_5mt", None, {"transmission.cvt.belt.band_offset_mm": 2}),
+        ("rover_216_cvt", "eudc", -7.0, "rover_216_5mt", "dexron_iii", {}),
+        ("civic_20_cvt", "ece15", 24.0, "twin", None, {}),
+        ("justy_ecvt", "eudc", 20.0, "twin", None, {}),
+    ],
+)
+def test_an_answer_is_that_of_the_program(
+    vehicle: str, cycle: str, ambient: float, baseline: str, oil: str | None, values: dict[str, float]
+) -> None:
+    """Truth: `run --json`, which tests/cli/commands/one_answer.rs holds against terminal, report and live page."""
+    car = cc.Car(vehicle, set=values, lubricant=oil)
+    ours = car.answer(cycle, ambient_degc=ambient, baselines=[baseline], draws=24, levers=False)
+    words = ["run", "--vehicle", vehicle, "--cycle", cycle, "--ambient", str(ambient), "--baseline", baseline, "--draws", "24"]
+    words += ["--price", "never", "--json"]
+    words += [part for key, value in values.items() for part in ("--set", f"{key}={value}")]
+    words += ["--lubricant", oil] if oil else []
+    theirs = json.loads(printed(*words))["answer"]
+    for key in ("schema", "plan", "draws", "failed_draws", "reasons", "fuel_l_per_100km", "differences"):
+        assert ours[key] == theirs[key], key

@@ -38,7 +38,7 @@ fn the_strip_states_if_the_sign_is_certain() {
         ),
         (
             None,
-            "6.3 % more than five &lt;gears&gt;; how sure that is, is not known",
+            "6.3 % more than five &lt;gears&gt;; no range is claimed",
         ),
     ] {
         let picture = answer_strip("own", "somewhere", &[row(drawn)]);

@@ -25,7 +25,7 @@ pub(super) fn strip(
     };
     let compared = against(percent, interval, baseline);
     match interval {
-        None => format!("{subject} uses {compared}; how sure that is, is not known"),
+        None => format!("{subject} uses {compared}; no range is claimed"),
         Some(ends @ [low, high]) if low < 0.0 && high > 0.0 => {
             format!(
                 "{subject} uses {compared}; even the sign is open: {}",
