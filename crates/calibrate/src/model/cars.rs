@@ -66,9 +66,9 @@ impl<'p> Cars<'p> {
         }
         for (k, free) in plan.parameters.iter().enumerate() {
             let found: Vec<(&FittedCar, &Param)> = (cars.fitted.iter())
-                .filter_map(|car| {
-                    let own = car.params.iter().find(|(place, _)| *place == k);
-                    own.map(|(_, param)| (car, param))
+                .flat_map(|car| {
+                    let own = car.params.iter().filter(|(place, _)| *place == k);
+                    own.map(move |(_, param)| (car, param))
                 })
                 .collect();
             match found.first() {
