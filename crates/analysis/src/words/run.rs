@@ -227,7 +227,14 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let mut explained = [false, run.fleet.is_some()];
     let recording = summary.recording.as_ref();
     let left = |k: usize| recording.and_then(|own| own.percent.get(k).copied().flatten());
+    // Next to a car that is like for like another car says little: the table has it.
+    let is_other = |k: usize| summary.runs[k + 1].role != UNCHANGED;
+    let mut compared = summary.comparison.iter().enumerate();
+    let has_alike = compared.any(|(k, of)| is_other(k) && of.differences.is_empty());
     let against = summary.comparison.iter().enumerate().filter_map(|(k, of)| {
+        if has_alike && is_other(k) && !of.differences.is_empty() {
+            return None;
+        }
         let said = against(of, [run, &summary.runs[k + 1]], explained).map(|said| match left(k) {
             Some(ends) => format!(
                 "{said} [{} by the resolution of the log]",

@@ -4,8 +4,8 @@
 //! |---|---|---|
 //! | MB-1 | torque at the input shaft for one at the wheels: GT-2, shaft 0 the input, 1 the output, 2 the differential; stage 1 is the gear engaged | derived; geometry ASSUMED |
 //! | MB-2 | seals: LS-1 | source: ISO/TR 14179-2; sizes ASSUMED |
-//! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes and preload ASSUMED |
-//! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published hot loss |
+//! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes ASSUMED, factors fitted to the published losses and thesis 5.5.1 |
+//! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published losses |
 //! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
 //! | MB-6 | GT-1 and GT-2 with f_bearing (M_0 + M_pre) and the bearings' part of k, f_churning C, f_seal T_seal, f_mesh the teeth's part of k; a map f times | derived: definition of losses changed by the factors f of `loss_factor`, for their price |
 //!
