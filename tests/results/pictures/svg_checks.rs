@@ -57,7 +57,7 @@ pub fn check_drawing(svg: &str, rows: usize, most_wide: f64) {
     };
     let (width, height) = (size("width"), size("height"));
     assert!(
-        width <= most_wide && height > 100.0 && height < 3000.0,
+        width <= most_wide && height > 100.0 && height < 4000.0,
         "{width} {height}"
     );
     let mut boxes: Vec<Box> = Vec::new();

@@ -13,7 +13,7 @@ use super::text::{Cut, lines, text_width};
 const WIDTH: f64 = 360.0;
 /// Edge of the picture, left edge of a plot with a vertical axis, room right of it for the last label of its axis, pixels.
 const EDGE: f64 = 6.0;
-const LEFT: f64 = 50.0;
+const LEFT: f64 = 58.0;
 const RIGHT: f64 = 16.0;
 /// Maximum room for names at the ends of lines, pixels: longer ones are in the legend.
 const NAMES: f64 = 96.0;
