@@ -98,7 +98,7 @@ fn a_hold_moves_nothing_at_rest_and_kicks_nothing_down() {
             "{}",
             row.belt_ratio
         );
-        missed += usize::from(row.flags.contains(Flags::MISSED_TRACE));
+        missed += usize::from(row.flags.contains(Flags::FULL_LOAD));
     }
     assert!(missed > 0);
 }

@@ -234,7 +234,7 @@ impl Scene<'_> {
             own_drag_nm,
             heat_w: loss_heat_w(self.car, &cut.loss_w),
             safety: f64::NAN,
-            deficit_w: match fired.flags.contains(Flags::MISSED_TRACE) {
+            deficit_w: match fired.flags.contains(Flags::FULL_LOAD) {
                 true => fired.deficit_w,
                 false => 0.0,
             },

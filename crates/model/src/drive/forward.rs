@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | FO-1 | T = T_f(P) + J (w(P)2 - w_0 2)/(2 w(P) dt), P the power at the wheels at which T is the torque that is given; T_f, w, losses, pressure by the step of the box at P (CV-1 to CV-6, LC-1 or TC-1) | derived: one power balance, solved for its other end |
+//! | FO-1 | T = T_f(P) + J (w_1(P)2 - w_0 2)/(2 w(P) dt), w_0 and w_1 at the ends of the step, P the power at the wheels at which T is the torque that is given; T_f, w, losses, pressure by the step of the box at P (CV-1 to CV-6, LC-1 or TC-1) | derived: one power balance, solved for its other end |
 //! | FO-2 | a T that no P has: the nearest that one has | derived: between least torque (CV-3) and full load (CV-4) at the ends of P; idle speed is held (LC-1) |
 //! | FO-3 | wheels that turn slower than 0.02 rad/s count as turning so fast | ASSUMED: 6 mm/s; the box at rest passes on creep torque alone, whatever the engine gives (LC-2) |
 //! | FO-4 | in a step in which a lock-up closes T = T_f(P), and the rotating energy of the slower engine is heat of the coupling | derived: SI-4, with an engine whose torque is given; it slips until the engine has come down |
@@ -127,8 +127,7 @@ impl<'a> Forward<'a> {
         });
         self.state.transmission = Some(found.after);
         self.state.kinetic_j += kinetic_w * given.dt_s;
-        let speeds_rad_s = (output.engine_rad_s, wheel_rad_s);
-        self.state.running = running.after(false, given.dt_s, speeds_rad_s);
+        self.state.running = running.after(false, given.dt_s, output.end_rad_s);
         found.turned
     }
 
@@ -217,8 +216,8 @@ impl<'a> Forward<'a> {
             (after, output, begun_j)
         });
         self.state.kinetic_j = begun_j;
-        let w = output.engine_rad_s;
-        let kinetic_w = (0.5 * inertia * w * w - begun_j) / given.dt_s;
+        let (w, end) = (output.engine_rad_s, output.end_rad_s);
+        let kinetic_w = (0.5 * inertia * end * end - begun_j) / given.dt_s;
         let mut taken_nm = output.shaft_nm;
         if kinetic_w < 0.0 && self.closes(&output) {
             // A coupling that loses a part only passes on the rest (LC-6).
@@ -259,6 +258,7 @@ impl<'a> Forward<'a> {
             accel_m_s2: (to - from) / given.dt_s * radius_m,
             wheel_rad_s,
             power_w,
+            rise_w: 0.0,
             positive_j: larger(power_w, 0.0) * given.dt_s,
             negative_j: smaller(power_w, 0.0) * given.dt_s,
         }

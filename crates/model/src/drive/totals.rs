@@ -277,7 +277,7 @@ impl<R: Real> Totals<R> {
 
     /// The worst deficit of the runs that miss the trace.
     fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
-        let misses = |run| R::get(&row.flags, run).contains(Flags::MISSED_TRACE);
+        let misses = |run| R::get(&row.flags, run).contains(Flags::FULL_LOAD);
         let lacks = lacks & at_s.mask_lanes(misses);
         let nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
         self.worst_deficit_w = lacks.select(row.deficit_w, self.worst_deficit_w);

@@ -261,7 +261,7 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
     let share = (input_nm + engine.accessories_nm(w)) / engine.full_load_nm(w);
     near(d.throttle + 1.0, share.clamp(0.0, 1.0) + 1.0, 1e-9);
     for (flag, want) in [
-        (Flags::MISSED_TRACE, bind == 2),
+        (Flags::FULL_LOAD, bind == 2),
         (
             Flags::CLUTCH_SLIPPING,
             w > input * (1.0 + 1e-9) && input_nm > 0.0,
@@ -360,7 +360,7 @@ fn val_steps_in_gear_from_their_parts() {
                                 ..s
                             };
                             assert_eq!(solve(&car, &above).0.gear, d.gear);
-                        } else if d.flags.contains(Flags::MISSED_TRACE) {
+                        } else if d.flags.contains(Flags::FULL_LOAD) {
                             assert!(lower.is_none_or(|w| w >= car.engine.highest_rad_s), "{s:?}");
                         }
                         binds[check(&car, &s, &d, d.gear)] += 1;

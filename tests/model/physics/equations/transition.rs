@@ -151,7 +151,7 @@ fn val_shift_of_the_shipped_box() {
                 let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
                 let plain = route(b.cvt().ratio.route_efficiency);
                 let again = (d.belt_ratio / plain.0 - 1.0).abs() > FLOW;
-                let missed = d.flags.contains(Flags::MISSED_TRACE);
+                let missed = d.flags.contains(Flags::FULL_LOAD);
                 let (ratio, change, short) = if missed {
                     route(0.4)
                 } else if again {

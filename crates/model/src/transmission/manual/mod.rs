@@ -35,6 +35,7 @@ use crate::lubricant::VALID_K;
 use crate::maps::LossMap;
 use crate::math::{Gather, Mask, Real, gather_each, physics};
 use crate::prime_mover::PrimeMover;
+use crate::road::WheelDemand;
 use crate::thermal::SUMP;
 
 /// The checked manual box.
@@ -83,6 +84,16 @@ impl<R: Real> Driveline<R> for Manual<R> {
         false
     }
 
+    fn overrun_rad_s(
+        &self,
+        state: Option<&DrivelineState<R>>,
+        wheel: (&WheelDemand<R>, [f64; 2]),
+        gear: Option<GearCommand>,
+        _: R,
+    ) -> [R; 2] {
+        self.in_overrun_rad_s(state, wheel, gear)
+    }
+
     fn neutral_share(
         &self,
         _: Option<&DrivelineState<R>>,
@@ -105,6 +116,18 @@ impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
     pub fn loss_factors(&self) -> LossFactors {
         self.factor.as_deref().copied().unwrap_or(UNCHANGED)
+    }
+
+    /// Speeds at which the driver of a car that slows down opens the clutch of a warm engine, m/s (MB-5): in the gears that are in force there.
+    #[must_use]
+    pub fn opens_m_s(&self, idle_rad_s: f64, wheel_radius_m: f64) -> Vec<f64> {
+        let speed = |overall: &f64| MIN_OVER_IDLE * idle_rad_s / overall * wheel_radius_m;
+        let own = self.overall.iter().map(speed).enumerate();
+        let in_force = |(place, speed): &(usize, f64)| match place.checked_sub(1) {
+            Some(below) => self.shifts.down_m_s.get(below).is_some_and(|down| speed > down),
+            None => true,
+        };
+        own.filter(in_force).map(|(_, speed)| speed).collect()
     }
 
     /// Multiplies each loss by a factor (MB-6, LC-6).
@@ -179,9 +202,29 @@ impl<R: Real> Manual<R> {
             throttle: zero,
             secondary_pa: zero,
             coupled: input.gt(idle),
+            closing_rad_s: zero,
             stood: true,
             rested_s: 0.0,
         }
+    }
+
+    /// Speeds of the input shaft at both ends of a step in the gear that the driver chooses by speed, rad/s.
+    pub(super) fn in_overrun_rad_s(
+        &self,
+        state: Option<&DrivelineState<R>>,
+        (wheel, [first, last]): (&WheelDemand<R>, [f64; 2]),
+        command: Option<GearCommand>,
+    ) -> [R; 2] {
+        let count = self.overall.len();
+        let gear = R::per_lane(|run| match command {
+            Some(command) => command.gear().min(count as u8),
+            None => {
+                let before = state.map_or(1, |state| *R::get(&state.gear, run));
+                R::get(&self.shifts, run).for_speed(wheel.speed_m_s, before, count)
+            }
+        });
+        let mean = self.input_rad_s(&gear, wheel.wheel_rad_s);
+        [first * mean, last * mean]
     }
 
     /// Speed of the input shaft in the gear of each run, rad/s; 0 without one.
@@ -291,7 +334,7 @@ impl<R: Real> Manual<R> {
             let kept = R::get_mut(&mut state.gear, run);
             *kept = if gear > 0 { gear } else { *kept };
         }
-        state.engine_rad_s = output.engine_rad_s;
+        state.engine_rad_s = output.end_rad_s;
         let in_gear = output
             .residual
             .mask_lanes(|run| *R::get(&output.gear, run) > 0);
