@@ -329,7 +329,9 @@ impl Trace {
         for (number, interval) in self.intervals.iter().enumerate() {
             let mut rest = *interval;
             let later = at_s.partition_point(|time_s| *time_s <= interval.start_s);
-            let within = at_s[later..].iter().take_while(|time_s| **time_s < interval.end_s);
+            let within = at_s[later..]
+                .iter()
+                .take_while(|time_s| **time_s < interval.end_s);
             for &time_s in within {
                 if rest.start_s < time_s && time_s < rest.end_s {
                     let share = (time_s - rest.start_s) / (rest.end_s - rest.start_s);

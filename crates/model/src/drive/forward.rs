@@ -114,10 +114,7 @@ impl<'a> Forward<'a> {
         self.state.running = self.state.running.started(given.engine_k[0]);
         let found = self.solve(given);
         let Turned {
-            output,
-            kinetic_w,
-            wheel_rad_s,
-            ..
+            output, kinetic_w, ..
         } = found.turned;
         let wheel = self.demand(given, found.power_w);
         let running = self.state.running;

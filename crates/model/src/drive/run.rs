@@ -175,7 +175,7 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
 }
 
 /// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop, and where the driver of a manual
-/// box changes gear or opens the clutch by speed (MB-5), so that no step has two gears.
+/// box changes gear or opens the clutch by speed (MB-5), or fuel comes back in overrun (EN-11), so that no step has two gears.
 pub fn own_trace<'a>(car: &Car, trace: &'a Trace) -> Cow<'a, Trace> {
     let trace = match &car.engine.start_stop {
         Some(on) => Cow::Owned(cut_at_stops(trace, on)),
@@ -187,8 +187,11 @@ pub fn own_trace<'a>(car: &Car, trace: &'a Trace) -> Cow<'a, Trace> {
     if trace.gears(manual.overall.len()).is_some() {
         return trace;
     }
-    let opens = manual.opens_m_s(car.engine.idle_hot_rad_s, car.road_load.wheel_radius_m);
-    let falling = [&manual.shifts.down_m_s[..], &opens].concat();
+    let radius_m = car.road_load.wheel_radius_m;
+    let opens = manual.opens_m_s(car.engine.idle_hot_rad_s, radius_m);
+    let cut = [car.engine.cut_above_rad_s, car.engine.fuel_back_rad_s];
+    let cuts = cut.map(|rad_s| manual.passes_m_s(rad_s, radius_m)).concat();
+    let falling = [&manual.shifts.down_m_s[..], &opens, &cuts].concat();
     match trace {
         Cow::Borrowed(trace) => trace.cut_at_speeds(&manual.shifts.up_m_s, &falling),
         Cow::Owned(trace) => {

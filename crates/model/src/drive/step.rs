@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | SI-1 | crank torque = flywheel torque + accessories + T_k, T_k w = change of rotating energy / dt | derived |
 //! | SI-2 | rotating energy = J w2/2 after every step, w the speed at its end; T_k within the engine's room, drag below and full load above; only what full load cannot give follows later | derived: power is what the shafts pass on |
-//! | SI-5 | an engine that the wheels turn takes the energy to turn faster, as after a change down, from the brakes and from what they drag, as far as those go; the rest follows later | derived: the closing clutch pulls it up; it burns nothing for it, whatever the step |
+//! | SI-5 | an engine that wheels turn which are braked, too, takes the energy to turn faster, as after a change down, from what the brakes take, as far as that goes; the rest follows later | derived: the closing clutch pulls it up; it burns nothing for it, whatever the step |
 //! | SI-4 | rotating energy of a slower engine that its drag and load do not take up makes up for a deficit or goes to the brakes, or into a coupling that slips | derived: it comes through the locked clutch to the wheels |
 //! | TR-3 | m_e dv/dt = F - R, v >= 0 the speed by which the car is slower than its trace, F the force missing at full load, else R = (1/throttle - 1) P/v_0 what full load has left at the engine's speed; v = 0 where no power is asked for; missed where v is above the tolerance of the test | derived: force over mass; a driver who is behind gives full load, and where the trace slows down lets it come to the car; tolerances: 40 CFR 1066.425 (2 mph), UN Regulation 83 and UN GTR 15 (2 km/h), from memory |
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
@@ -303,9 +303,7 @@ fn behind_m_s<R: Real, T>(
     let left_w = power_w * (1.0 / output.throttle - 1.0);
     let missing_w = lacks.select(output.deficit_w, -left_w);
     let by_m_s = missing_w / input.wheel.speed_m_s * input.dt_s / car.road_load.inertia_kg;
-    power_w
-        .gt(0.0)
-        .select((before_m_s + by_m_s).max(0.0), zero) // TR-3
+    power_w.gt(0.0).select((before_m_s + by_m_s).max(0.0), zero) // TR-3
 }
 
 /// Rotating energy of a slowing engine beyond its drag and load goes into a coupling that slips, else to the wheels.
@@ -362,11 +360,10 @@ fn inertia<R: Real, T>(
     let (faster, slower) = (wanted.gt(0.0), zero.gt(wanted));
     let (mut torque, mut from_wheels_w) = (zero, zero);
     if faster.any() {
-        let overruns = zero.gt(output.shaft_nm);
-        let braked_w = output.brake_w.min(wanted * w).max(0.0);
-        from_wheels_w = (overruns & faster).select(braked_w, zero); // SI-5
-        let room_nm = overruns.select((-steady).max(0.0), engine.full_load_nm(w) - steady);
-        torque = room_nm.clamp(0.0, (wanted - from_wheels_w / w).max(0.0)); // SI-2
+        let braked = zero.gt(output.shaft_nm) & output.brake_w.gt(0.0) & faster;
+        from_wheels_w = braked.select(output.brake_w.min(wanted * w), zero); // SI-5
+        let fired_nm = (engine.full_load_nm(w) - steady).clamp(0.0, wanted); // SI-2
+        torque = braked.select(zero, fired_nm);
     }
     if !faster.all() {
         let braking = (-(steady + engine.own_drag_nm(w))).clamp(wanted, 0.0); // SI-2

@@ -199,7 +199,6 @@ impl<'a> Prepared<'a> {
 #[physics]
 #[inline(never)]
 fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
-    #[cfg(any())]
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),
         not(debug_assertions)
@@ -212,7 +211,6 @@ fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outco
             return Some(simd.vectorize(|| in_lanes(crate::math::eight(simd), group, phases)));
         }
     }
-    #[cfg(any())]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(simd) = level.as_sse2() {
         return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));

@@ -242,15 +242,20 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
     }
     if input_nm >= 0.0 {
         let [_, slowest] = reach(if bind == 1 { least } else { demanded });
-        let fall = (s.before_rad_s - w).max(0.0);
+        // How much faster the engine is than the box: at the beginning, less that at the end of the step.
+        let box_before = m.overall[usize::from(gear) - 1]
+            * (s.wheel_rad_s - 0.5 * s.accel_m_s2 * s.dt_s / 0.28).max(0.0);
+        let fall = ((s.before_rad_s - box_before) - (w - input)).max(0.0);
         let slips = if fall > 0.0 {
             (fall / (s.before_rad_s - slowest)).min(1.0)
         } else {
             0.0
         };
-        // No more than full load is passed on.
+        // No more than full load is passed on, and what the rotating energy gives.
         let room_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - input_nm;
-        let most = room_nm.max(0.0) * w / input_nm.max(1e-300);
+        let j = 0.5 * car.engine.inertia_kg_m2;
+        let released_w = j * (s.before_rad_s * s.before_rad_s - d.end_rad_s * d.end_rad_s) / s.dt_s;
+        let most = (room_nm.max(0.0) * w + released_w.max(0.0)) / input_nm.max(1e-300);
         let excess = (0.5 * fall * slips).min(most);
         tight(d.shaft_nm, input_nm * (1.0 + excess / w));
         tight(

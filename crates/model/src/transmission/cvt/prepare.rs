@@ -93,7 +93,10 @@ fn shift<P: PrimeMover<R>, R: Real>(
     let (wheel, engine) = (input.wheel, input.engine);
     let half_rise_w = 0.5 * wheel.rise_w;
     let powers_w = [wheel.power_w - half_rise_w, wheel.power_w + half_rise_w];
-    let asked = [powers_w[0] / engine.rated_w(), powers_w[1] / engine.rated_w()];
+    let asked = [
+        powers_w[0] / engine.rated_w(),
+        powers_w[1] / engine.rated_w(),
+    ];
     let share = cvt.ratio.filtered_share(kept.share, asked, input.dt_s);
     let secondary_rad_s = cvt.final_drive.ratio * wheel.wheel_rad_s;
     let primary_rad_s = cvt.primary_rad_s(kept.ratio, secondary_rad_s, past);
@@ -118,9 +121,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
     let speeds_m_s = wheel.end_speeds_m_s(input.dt_s);
     let of_mean = wheel.ends_over_mean(input.dt_s);
     let secondaries = [secondary_rad_s * of_mean[0], secondary_rad_s * of_mean[1]];
-    let mapped = |k: usize, share: R| {
-        cvt.mapped_rad_s(engine, (speeds_m_s[k], secondaries[k]), share)
-    };
+    let mapped =
+        |k: usize, share: R| cvt.mapped_rad_s(engine, (speeds_m_s[k], secondaries[k]), share);
     let efficiency = route.asked.efficiency;
     let mut demand = RatioDemand {
         begins: None,
@@ -189,7 +191,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
 fn locks_at<R: Real>(lock_rad_s: R, [first, last]: [R; 2]) -> R {
     let one = first.splat(1.0);
     let share = ((lock_rad_s - first) / (last - first)).clamp(0.0, 1.0);
-    (last.gt(first) & last.gt(lock_rad_s)).select(share, lock_rad_s.gt(first).select(one, one - one))
+    (last.gt(first) & last.gt(lock_rad_s))
+        .select(share, lock_rad_s.gt(first).select(one, one - one))
 }
 
 /// Powers of a step.

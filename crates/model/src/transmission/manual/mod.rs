@@ -118,14 +118,22 @@ impl Manual {
         self.factor.as_deref().copied().unwrap_or(UNCHANGED)
     }
 
-    /// Speeds at which the driver of a car that slows down opens the clutch of a warm engine, m/s (MB-5): in the gears that are in force there.
+    /// Speeds at which the driver of a car that slows down opens the clutch of a warm engine, m/s (MB-5).
     #[must_use]
     pub fn opens_m_s(&self, idle_rad_s: f64, wheel_radius_m: f64) -> Vec<f64> {
-        let speed = |overall: &f64| MIN_OVER_IDLE * idle_rad_s / overall * wheel_radius_m;
+        self.passes_m_s(MIN_OVER_IDLE * idle_rad_s, wheel_radius_m)
+    }
+
+    /// Speeds at which the engine of a car that slows down passes a speed, rad/s, in each gear that is in force there, m/s.
+    #[must_use]
+    pub fn passes_m_s(&self, engine_rad_s: f64, wheel_radius_m: f64) -> Vec<f64> {
+        let speed = |overall: &f64| engine_rad_s / overall * wheel_radius_m;
         let own = self.overall.iter().map(speed).enumerate();
-        let in_force = |(place, speed): &(usize, f64)| match place.checked_sub(1) {
-            Some(below) => self.shifts.down_m_s.get(below).is_some_and(|down| speed > down),
-            None => true,
+        let down = &self.shifts.down_m_s;
+        let in_force = |(place, speed): &(usize, f64)| {
+            let below = place.checked_sub(1).and_then(|below| down.get(below));
+            let above = down.get(*place);
+            below.is_none_or(|below| speed > below) && above.is_none_or(|above| speed < above)
         };
         own.filter(in_force).map(|(_, speed)| speed).collect()
     }
