@@ -227,6 +227,9 @@ impl Scene<'_> {
         };
         let node = Node {
             engine_rad_s: w,
+            end_rad_s: by.engine_end_rad_s,
+            accessories_nm,
+            brake_w: fired.brake_w,
             fired_nm: fired.engine_torque_nm + accessories_nm,
             cut_nm: cut.engine_torque_nm + accessories_nm,
             drag_nm,

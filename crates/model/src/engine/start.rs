@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | EN-9 | fuel of a start: m(t) = m_0 clip((60 degC - T_start)/60 K, 0, 1) F(t/tau), F(u) = 2u - u2 up to u = 1, then 1 | form: enrichment that fades in some 30 s (manuals of the 1990s), by coolant at the start; size ASSUMED |
-//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times from none to all between n_back and n_cut | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
+//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times the mean over the step of from none to all between n_back and n_cut, speed linear: of a box with gears that of the wheels, of a CVT that before the step, at most that in low | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
 //!
 //! With ramps in place of a hysteresis the fuel of a step is a continuous function of what went before, and no state is carried.
 

@@ -6,12 +6,12 @@
 //! | MB-2 | seals: LS-1 | source: ISO/TR 14179-2; sizes ASSUMED |
 //! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes and preload ASSUMED |
 //! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published hot loss |
-//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
+//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque and the engine may turn as fast at both ends of the step, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
 //! | MB-6 | GT-1 and GT-2 with f_bearing (M_0 + M_pre) and the bearings' part of k, f_churning C, f_seal T_seal, f_mesh the teeth's part of k; a map f times | derived: definition of losses changed by the factors f of `loss_factor`, for their price |
 //!
 //! At 80 degC the mean of gears 3 to 5 without load follows the published 0.925 Nm + 0.000407 Nm/rpm within 25 % from 1000 to 4000 rpm, and
 //! flatter. In neutral the engine turns the input shaft and a share of the losses in top gear; declutched, the wheels turn the box.
-//! A gear change is driven in the gear that follows it. After a change up the clutch slips until the engine has come down to the box (EN-12).
+//! A gear change is driven in the gear that follows it; where the driver's shift speeds decide, the trace has a row there. After a change up the clutch slips until the engine has come down to the box (EN-12).
 
 mod engaged;
 mod gears;

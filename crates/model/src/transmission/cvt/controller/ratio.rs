@@ -7,12 +7,14 @@
 //! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
 //! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-14 and PC-1 to PC-6 | derived: definition |
 //! | RC-15 | a step for which a ratio is demanded goes towards it within RC-4 and RC-5, in place of RC-1 to RC-3 and RC-6 to RC-14 | derived: definition; the box's own limits hold for any controller |
+//! | RC-16 | a ratio that is imposed (RC-12) is that of the whole step, its end included | derived: definition |
+//! | RC-17 | within a step ln I waits as RC-6 and RC-10 have it, goes to ln I* at the rates of RC-4 and RC-5 until it meets it, then follows it within these; ln I* linear between its values by speeds and demand at both ends of the step, level where I* is at an end of the ratio; losses at exp(mean of ln I), the next step from its end | derived: integral of a way of straight parts, so that the rates hold at every instant and not once a step |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
-//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does at the end of the step, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart, n_p the speed of the primary; none while the belt is at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
-//! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
-//! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
+//! | RC-6 | no up-shift before the launch clutch has locked, which it has within a step once I w_s has come to the engine's speed before it | source: thesis 1.1.2, order A-B-C-D of the variogram |
+//! | RC-9 | RC-1 and RC-2 look at u, tau du/dt = P/P_max - u, solved over a step in which P is linear; RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
 //! | RC-5 | and <= V_left / (A 2 tan th \|dR/d ln I\|), V_left by PU-7 at the end of the step, with the pressure that this rate needs (PC-5): the largest rate that fulfils it | derived: thesis 9.1; at the end of the step as all else in it; solved to 1e-6 of the demanded flow |
