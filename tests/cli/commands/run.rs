@@ -617,7 +617,10 @@ fn a_trace_is_missed_beyond_its_tolerance() {
         outcomes.push(failed);
     }
     let first = outcomes.iter().position(|failed| *failed).unwrap_or(0);
-    assert!(outcomes[first..].iter().all(|failed| *failed), "{outcomes:?}");
+    assert!(
+        outcomes[first..].iter().all(|failed| *failed),
+        "{outcomes:?}"
+    );
     assert!(
         outcomes.contains(&true) && outcomes.contains(&false),
         "{outcomes:?}"

@@ -486,7 +486,7 @@ fn missed(setup: &Setup, cycle: &Cycle, ambient: f64) -> Missed {
         avoidable: Vec::new(),
     };
     for (i, (step, row)) in trace.steps(1.0).zip(&o.rows).enumerate() {
-        if row.flags.contains(Flags::FULL_LOAD) {
+        if row.flags.contains(Flags::MISSED_TRACE) {
             m.all_s += row.dt_s;
             let (least, ratio) = least_deficit(
                 &bench,

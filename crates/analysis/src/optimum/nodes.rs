@@ -197,6 +197,7 @@ impl Scene<'_> {
         let hold = Hold {
             ratio,
             clamp,
+            end: None,
             paced: false,
         };
         let one = |cut_rad_s: f64| self.driven(reference, k, &place, (&hold, cut_rad_s));

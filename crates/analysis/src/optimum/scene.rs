@@ -240,6 +240,7 @@ impl<'a> Scene<'a> {
         Hold {
             ratio,
             clamp,
+            end: None,
             paced: false,
         }
     }

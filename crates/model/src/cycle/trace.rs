@@ -321,9 +321,11 @@ impl Trace {
         starts.map(rest).collect()
     }
 
-    /// The same trace with rows at more times, s, in rising order.
+    /// The same trace with rows at more times, s.
     #[must_use]
     pub fn cut(&self, at_s: &[f64]) -> Self {
+        let mut at_s = at_s.to_vec();
+        at_s.sort_by(f64::total_cmp);
         let mut intervals = Vec::with_capacity(self.intervals.len() + at_s.len());
         let mut from = Vec::with_capacity(intervals.capacity());
         for (number, interval) in self.intervals.iter().enumerate() {

@@ -131,7 +131,10 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
         let wanted = (begun - c.kinetic_j) / dt / w;
         // In overrun the brakes give it, what they have (SI-5).
         let lags = row.kinetic_w < wanted * w * (1.0 - 1e-9);
-        let by_brakes = row.engine_torque_nm < 0.0 && wanted > 0.0 && (row.brake_w > 0.0 || lags);
+        let room_w = (now.full_load_nm(w) - steady).max(0.0).min(wanted.max(0.0)) * w;
+        let fired = row.brake_w <= 0.0 && (row.kinetic_w - room_w).abs() <= 1e-6 * (1.0 + room_w);
+        let overruns = row.engine_torque_nm < 0.0 && wanted > 0.0;
+        let by_brakes = overruns && !fired && (row.brake_w > 0.0 || lags);
         let torque = if by_brakes {
             0.0
         } else if wanted > 0.0 {

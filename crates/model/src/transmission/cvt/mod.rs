@@ -175,8 +175,10 @@ impl Copy for CvtState {}
 /// Values imposed on a CVT in a step, in place of its controller (RC-12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold<R: Real = f64> {
-    /// Belt ratio at the end of the step; the one before at rest.
+    /// Belt ratio of the step, its target if it is paced; the one before at rest.
     pub ratio: R,
+    /// Belt ratio at the end of the step, where that is another one (RC-17).
+    pub end: Option<R>,
     /// Clamp law; that of the box without one.
     pub clamp: Option<ClampLaw<R>>,
     /// True if the ratio is a target: the box goes there as fast as it can (RC-4, RC-5).

@@ -162,8 +162,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
         Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
         Some(hold) => Shifted {
             mean: hold.ratio,
-            end: hold.ratio,
-            change: (hold.ratio / kept.ratio).ln(),
+            end: hold.end.unwrap_or(hold.ratio),
+            change: (hold.end.unwrap_or(hold.ratio) / kept.ratio).ln(),
             held: zero.splat_mask(false),
         }, // RC-12, RC-16
         None => cvt.ratio.step(&demand),

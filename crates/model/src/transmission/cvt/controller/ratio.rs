@@ -300,7 +300,13 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// As much of the way from the ratio before to the ones wanted at the beginning and end of the step as the rates allow; none where the ratio stays.
-    fn limited(
+    #[inline(never)]
+    fn limited(&self, d: &RatioDemand<R>, ends: ([R; 2], R), stays: R::Mask) -> Shifted<R> {
+        d.ratio_before
+            .vectorize(|| self.limited_between(d, ends, stays))
+    }
+
+    fn limited_between(
         &self,
         d: &RatioDemand<R>,
         (wanted, bends_at): ([R; 2], R),
