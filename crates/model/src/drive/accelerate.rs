@@ -413,7 +413,7 @@ impl<'a> Pedal<'a> {
         let wanted_j = 0.5 * self.car.engine.inertia_kg_m2 * end * end;
         let slow = state.kinetic_j < wanted_j * (1.0 - ROUNDING) && !opens;
         let rises = step.end_speed_m_s > step.start_speed_m_s;
-        let fast = rises && larger(w, end) > self.car.engine.highest_rad_s;
+        let fast = rises && w > self.car.engine.highest_rad_s;
         // A manual box takes a lower gear where the one in force lacks torque, and one where the clutch is open (MB-5): not here.
         let manual = matches!(self.car.transmission, Transmission::Manual(_));
         let moves = !step.motion.rests();
