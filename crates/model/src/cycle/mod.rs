@@ -8,7 +8,9 @@ pub mod gtr15;
 mod trace;
 
 pub use gears::{GearColumns, GearCommand};
-pub use trace::{Interval, Motion, STANDSTILL_M_S, Step, Trace, is_standstill, mean_powers};
+pub use trace::{
+    Interval, Motion, STANDSTILL_M_S, Step, TOLERANCE_M_S, Trace, is_standstill, mean_powers,
+};
 
 /// How the fuel of the phases is put together to the cycle's one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

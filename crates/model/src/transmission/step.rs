@@ -49,7 +49,7 @@ impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
 pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
     pub gear: R::PerLane<u8>,
-    /// Engine speed, rad/s.
+    /// Engine speed at the end of the step, rad/s.
     pub engine_rad_s: R,
     /// Throttle, as a start for the solve.
     pub throttle: R,
@@ -57,6 +57,8 @@ pub struct DrivelineState<R: Real = f64> {
     pub secondary_pa: R,
     /// True where the coupling has locked.
     pub coupled: R::Mask,
+    /// Speed by which the engine is faster over a lock-up clutch that closes, at the end of the step, rad/s (TC-9).
+    pub closing_rad_s: R,
     /// True where the car stood still.
     pub stood: bool,
     /// Time that it has, s, with the engine running; kept by a CVT.
@@ -68,6 +70,8 @@ pub struct DrivelineState<R: Real = f64> {
 pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
     pub engine_rad_s: R,
+    /// Engine speed at the end of the step, rad/s.
+    pub end_rad_s: R,
     /// Torque at the flywheel into the transmission, without inertia, Nm.
     pub shaft_nm: R,
     /// Throttle 0..1.
@@ -125,6 +129,7 @@ impl<R: Real> StepOutput<R> {
         let (zero, none) = (number.splat(0.0), number.splat(f64::NAN));
         StepOutput {
             engine_rad_s: zero,
+            end_rad_s: zero,
             shaft_nm: zero,
             throttle: zero,
             gear: R::per_lane(|_| 0),
@@ -187,6 +192,7 @@ impl<R: Real> StepOutput<R> {
         }
         numbers!(
             engine_rad_s,
+            end_rad_s,
             shaft_nm,
             throttle,
             belt_ratio,
