@@ -214,6 +214,27 @@ fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f
     }
 }
 
+/// What rate and resolution of a log leave of the fuel and of the difference to each baseline; `None` of speeds that were not smoothed.
+pub fn resolution_left(summary: &Summary) -> Option<String> {
+    let own = summary.recording.as_ref()?;
+    let (fuel, run) = (own.fuel?, summary.runs.first()?);
+    let unit = run.over().unit();
+    let [low, high] = fuel.map(|end| fixed(end, 2));
+    let differences = summary
+        .comparison
+        .iter()
+        .zip(&summary.runs[1..])
+        .enumerate();
+    let differences = differences.filter_map(|(k, (_, other))| {
+        let ends = own.percent.get(k).copied().flatten()?;
+        Some(format!(", {} to {}", between(ends, "%"), other.label()))
+    });
+    let differences: String = differences.collect();
+    Some(format!(
+        "Rate and resolution of the log leave {low} to {high} {unit}{differences}."
+    ))
+}
+
 /// The first lines of a run, a sentence each.
 pub fn sentences(summary: &Summary) -> Vec<String> {
     let Some(run) = summary.runs.first() else {

@@ -10,7 +10,7 @@ use crate::charts::{foremost_levers, lever_title, saves};
 use cvtcycle_analysis::answer::Answer;
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
+use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time, resolution_left};
 use cvtcycle_analysis::words::{decimals, fuel_ranges};
 use cvtcycle_output::summary::{
     Comparison, Contradiction, DrawnDifference, Over, RunSummary, Summary, UNCHANGED,
@@ -325,6 +325,7 @@ fn checks(summary: &Summary) -> Vec<String> {
 fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     let failing = found.answer.as_ref().and_then(Answer::failures_in_words);
     let mut list: Vec<String> = failing.map(|words| words + ".").into_iter().collect();
+    list.extend(resolution_left(&found.summary));
     list.extend(doubts::cold(cars.get(..1).unwrap_or_default()));
     list.extend(found.validation.as_ref().map(validation::differing));
     let block = options.iter().map(|(_, block)| block);
