@@ -94,6 +94,24 @@ struct Columns<'a> {
     set: &'a [Setting],
 }
 
+/// Index of the column with the names of the cars.
+fn id_column(sheet: &Sheet, map: &ColumnMap) -> Result<usize, Problems> {
+    sheet.column(&map.id).ok_or_else(|| {
+        let problem = Problem::missing(format!(
+            "the table has no column `{}` with the names of the cars",
+            map.id
+        ))
+        .in_file(&sheet.file);
+        let hint = did_you_mean(&map.id, sheet.names.iter().map(String::as_str));
+        problem
+            .allowed(sheet.names.join(", "))
+            .hint(hint.unwrap_or_else(|| {
+                "a row is a car; a map names the columns of other tables".to_owned()
+            }))
+            .into()
+    })
+}
+
 /// Makes the cars of a table; `each` takes every one as soon as it is made, in parallel.
 pub(crate) fn fleet<T: Send>(
     sheet: &Sheet,
@@ -102,20 +120,7 @@ pub(crate) fn fleet<T: Send>(
     set: &[Setting],
     each: impl Fn(&mut FleetCar) -> T + Sync,
 ) -> Result<(Fleet, Vec<T>), Problems> {
-    let Some(id) = sheet.column(&map.id) else {
-        let problem = Problem::missing(format!(
-            "the table has no column `{}` with the names of the cars",
-            map.id
-        ))
-        .in_file(&sheet.file);
-        let hint = did_you_mean(&map.id, sheet.names.iter().map(String::as_str));
-        return Err(problem
-            .allowed(sheet.names.join(", "))
-            .hint(hint.unwrap_or_else(|| {
-                "a row is a car; a map names the columns of other tables".to_owned()
-            }))
-            .into());
-    };
+    let id = id_column(sheet, map)?;
     let known_keys: HashSet<&str> = catalogue::known_names()
         .iter()
         .map(String::as_str)
