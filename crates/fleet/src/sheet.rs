@@ -1,6 +1,9 @@
 //! A table of text: names of columns, rows of cells, rows that are refused.
 
-use cvtcycle_config::{Problem, Problems, decode};
+use std::collections::HashMap;
+
+use cvtcycle_config::log::table_text;
+use cvtcycle_config::{Problem, Problems};
 
 /// Most rows of a table.
 pub const MAX_ROWS: usize = 100_000;
@@ -45,7 +48,7 @@ impl Sheet {
     /// Reads a table: the first line has the names; cells are parted by the comma, semicolon or tab that parts the names.
     ///
     /// # Errors
-    /// Text in an unknown encoding, no rows, columns without a name or with the name of another one.
+    /// A file that is no text, no rows, columns without a name or with the name of another one.
     pub fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Problems> {
         if bytes.iter().all(u8::is_ascii_whitespace) {
             return Err(Problem::missing("the file is empty")
@@ -53,7 +56,7 @@ impl Sheet {
                 .hint(HINT)
                 .into());
         }
-        let text = decode(file, bytes)?;
+        let text = table_text(file, bytes, "cvtcycle.fleet(frame)")?;
         let head = text
             .lines()
             .find(|line| !line.trim().is_empty())
@@ -153,11 +156,11 @@ impl Sheet {
             .collect();
         self.names
             .extend(new.iter().map(|k| other.names[*k].clone()));
+        // The first row of a name counts.
+        let rows = other.rows.iter().rev();
+        let by_name: HashMap<&str, &Row> = rows.map(|row| (row.cells[at].as_str(), row)).collect();
         for row in &mut self.rows {
-            let found = other
-                .rows
-                .iter()
-                .find(|candidate| candidate.cells[at] == row.cells[own]);
+            let found = by_name.get(row.cells[own].as_str());
             row.cells.extend(
                 new.iter()
                     .map(|k| found.map_or_else(String::new, |found| found.cells[*k].clone())),
@@ -206,6 +209,37 @@ mod tests {
             assert_eq!(lines, [2, 4, 6], "{text:?}");
             assert_eq!(sheet.refused[0].line, 7, "{text:?}");
         }
+    }
+
+    /// Truth: the code charts of Unicode and of Windows-1252, in which é is E9.
+    #[test]
+    fn val_encodings_are_those_of_spreadsheets() {
+        let text = "carid;make\na;Citro\u{eb}n\nb;\u{e9}t\u{e9}\n";
+        let utf16 = |bytes: fn(u16) -> [u8; 2], mark: bool| -> Vec<u8> {
+            let mark = mark.then_some('\u{feff}');
+            let all: String = mark.into_iter().chain(text.chars()).collect();
+            all.encode_utf16().flat_map(bytes).collect()
+        };
+        let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        for bytes in [
+            text.as_bytes().to_vec(),
+            [b"\xef\xbb\xbf", text.as_bytes()].concat(),
+            utf16(u16::to_le_bytes, true),
+            utf16(u16::to_be_bytes, true),
+            utf16(u16::to_le_bytes, false),
+            latin,
+        ] {
+            let sheet = Sheet::read("t.csv", &bytes).expect("a table");
+            assert_eq!(sheet.names, ["carid", "make"], "{bytes:?}");
+            let cells: Vec<&str> = sheet.rows.iter().map(|row| row.cells[1].as_str()).collect();
+            assert_eq!(cells, ["Citro\u{eb}n", "\u{e9}t\u{e9}"], "{bytes:?}");
+        }
+        let problems = Sheet::read("t.xlsx", b"PK\x03\x04abc").expect_err("no text");
+        assert!(
+            problems
+                .iter()
+                .all(|own| own.hint.contains("cvtcycle.fleet(frame)"))
+        );
     }
 
     #[test]

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import subprocess
 import sys
+import tempfile
 
 import cvtcycle as cc
 import numpy
+import pandas
 import polars
 import pytest
 
@@ -159,3 +162,30 @@ def test_an_answer_is_that_of_the_program(
     theirs = json.loads(printed(*words))["answer"]
     for key in ("schema", "plan", "draws", "failed_draws", "reasons", "fuel_l_per_100km", "differences"):
         assert ours[key] == theirs[key], key
+
+
+def test_fleet_takes_frames_with_missing_cells() -> None:
+    """Truth: the same cars as text. pandas has NaN for a missing text or number, and then floats for whole numbers."""
+    cars = {
+        "carid": ["one", "two"],
+        "mass": ["1300kg", "1400kg"],
+        "displacement": ["1.8l", "2.0l"],
+        "power": ["104kW", "110kW"],
+        "engine": ["pfi", None],
+        "engine_year": [2018, None],
+        "hwfet_l_per_100km": [4.9, None],
+    }
+    text = "carid,mass,displacement,power,engine,engine_year,hwfet_l_per_100km\none,1300kg,1.8l,104kW,pfi,2018,4.9\ntwo,1400kg,2.0l,110kW,,,\n"
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "cars.csv")
+        with open(file, "w", encoding="utf-16") as out:
+            out.write(text)
+        wanted = cc.fleet(file, tests="hwfet")
+    assert wanted["refused"] == ["", ""]
+    for frame in (cars, pandas.DataFrame(cars), polars.DataFrame(cars)):
+        got = cc.fleet(frame, tests="hwfet")
+        for name in wanted.columns:
+            if isinstance(wanted[name], list):
+                assert got[name] == wanted[name], (type(frame), name)
+            else:
+                numpy.testing.assert_array_equal(got[name], wanted[name], err_msg=name)

@@ -44,6 +44,8 @@ pub(crate) use samples::Samples;
 pub use smooth::Resolution;
 pub(crate) use smooth::median;
 
+use std::borrow::Cow;
+
 use crate::channel::Quantity;
 use crate::csv::Columns;
 use crate::{Place, Problem, Problems};
@@ -126,6 +128,15 @@ struct Reader<'s, 't> {
 /// Likeness of a recording, with its resolution in m/s, to known drives.
 pub(crate) type Known = fn(&Samples, f64) -> Likeness;
 
+/// Text of a table in the encoding that it is in: UTF-8, UTF-16 or Windows-1252. `frame` is the call that takes a frame of a file that is no text.
+///
+/// # Errors
+/// No text, a line that is too long, an empty file.
+pub fn table_text<'b>(file: &str, bytes: &'b [u8], frame: &str) -> Result<Cow<'b, str>, Problem> {
+    let text = text::decode(bytes, frame).map_err(|problem| problem.in_file(file))?;
+    Ok(text.text)
+}
+
 /// Reads a log.
 pub(crate) fn read(
     file: &str,
@@ -134,10 +145,11 @@ pub(crate) fn read(
     likeness: Known,
 ) -> Result<Log, Refused> {
     let in_file = |problem: Problem| problem.in_file(file);
-    let text = text::decode(bytes).map_err(|problem| Refused {
-        problems: in_file(problem).into(),
-        is_known: true,
-    })?;
+    let text =
+        text::decode(bytes, "cvtcycle.Cycle.from_frame(frame)").map_err(|problem| Refused {
+            problems: in_file(problem).into(),
+            is_known: true,
+        })?;
     let sheet = Sheet::find(&text.text).ok_or_else(|| {
         let problem = Problem::syntax(
             "no table was found in the file: no sign parts its lines into as many columns",

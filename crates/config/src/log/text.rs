@@ -16,19 +16,22 @@ const BINARY: [(&[u8], &str); 6] = [
 ];
 
 /// Text of a file.
-pub(super) struct Text<'b> {
+pub(crate) struct Text<'b> {
     pub text: Cow<'b, str>,
     /// Name of an encoding other than UTF-8.
     pub encoding: Option<&'static str>,
 }
 
 /// Decodes UTF-8, UTF-16 with or without byte order mark, and else Windows-1252, which holds Latin-1 and every byte.
-pub(super) fn decode(bytes: &[u8]) -> Result<Text<'_>, Problem> {
+///
+/// # Errors
+/// Files that are no text, with `frame` as the call that takes a frame of them; no text at all.
+pub(crate) fn decode<'b>(bytes: &'b [u8], frame: &str) -> Result<Text<'b>, Problem> {
     if let Some((_, what)) = BINARY.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(
             Problem::syntax(format!("this is {what}, and no table in text"))
                 .allowed("a table in text, such as CSV")
-                .hint("read it with Python and give its frame: cvtcycle.Cycle.from_frame(frame)"),
+                .hint(format!("read it with Python and give its frame: {frame}")),
         );
     }
     let (text, encoding) = decoded(bytes);
