@@ -42,6 +42,7 @@ fn shifted(
         dt_s: 0.5,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, from)));
@@ -270,6 +271,7 @@ fn after(
         dt_s,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = b.car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&b.cvt().belt, 1.0)));
@@ -367,6 +369,7 @@ fn an_engine_at_rest_turns_nothing() {
         dt_s: 1.0,
         engine_off: true,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = car.transmission.start(&around);
     let Transmission::Cvt(cvt) = &car.transmission else {
