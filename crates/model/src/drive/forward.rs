@@ -269,6 +269,7 @@ impl<'a> Forward<'a> {
             dt_s: given.dt_s,
             engine_off: false,
             neutral_share: 0.0,
+            kinetic_j: self.state.kinetic_j,
         };
         f(car, &mut self.state.heat, &input)
     }

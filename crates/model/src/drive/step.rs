@@ -104,7 +104,7 @@ impl<'a> Drive<'a> {
             engine.charging_w = stopping.charging_w(start_stop, step.dt_s);
         }
         let engine = engine;
-        let input = StepInput {
+        let mut input = StepInput {
             wheel: &wheel,
             engine: &engine,
             oil: &car.oil,
@@ -118,6 +118,7 @@ impl<'a> Drive<'a> {
                 step,
                 state.running.since_s,
             ),
+            kinetic_j: state.kinetic_j,
         };
         let transmission = begun(
             car,
@@ -126,6 +127,7 @@ impl<'a> Drive<'a> {
             &mut state.transmission,
             &mut state.kinetic_j,
         );
+        input.kinetic_j = state.kinetic_j;
         car.transmission
             .solve_into(&input, transmission, &mut output);
         let mut electric = Electric::default();

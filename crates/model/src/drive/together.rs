@@ -344,7 +344,7 @@ fn drive_step<R: Real, T: Driveline<R>>(
     let wheel = wheel(car, step, &mut state.tyre_k);
     let driven = (state.transmission.as_ref(), gear);
     let engine = engine(car, step, &wheel, driven, &state.heat, &mut state.running);
-    let input = StepInput {
+    let mut input = StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &car.oil,
@@ -358,9 +358,11 @@ fn drive_step<R: Real, T: Driveline<R>>(
             step,
             state.running.since_s,
         ),
+        kinetic_j: state.kinetic_j,
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
+    input.kinetic_j = state.kinetic_j;
     zero.vectorize(|| {
         car.transmission
             .solve_into(&input, transmission, &mut output)

@@ -30,6 +30,8 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub engine_off: bool,
     /// Share of a step at rest that an automatic box is in neutral, 0..1 (SE-3).
     pub neutral_share: R,
+    /// Rotating energy of the engine before the step, J: less than that of its speed where it lags (SI-2, SI-5).
+    pub kinetic_j: R,
 }
 
 #[physics]

@@ -95,6 +95,7 @@ fn solve(car: &Car, s: &Step) -> (StepOutput, TransmissionState) {
         dt_s: s.dt_s,
         engine_off: s.engine_off,
         neutral_share: 0.0,
+        kinetic_j: engine.rotating_j(s.before_rad_s),
     };
     let mut state = car.transmission.start(&around);
     (

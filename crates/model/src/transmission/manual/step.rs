@@ -244,8 +244,8 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         let mean_rad_s = w + speed.excess_rad_s;
         let at_mean = coupling.engine_side(at.input_nm, input, mean_rad_s);
         let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
-        let released_j =
-            engine.rotating_j(self.state.engine_rad_s) - engine.rotating_j(output.end_rad_s);
+        // Not that of the speed before: after a change down in overrun the energy lags (SI-5), and what is not there would be burnt beyond full load.
+        let released_j = self.step.kinetic_j - engine.rotating_j(output.end_rad_s);
         let room_w = room_nm.max(0.0) * w + released_j.max(0.0) / self.step.dt_s;
         let on_the_way_w = (at_mean.loss_w - side.loss_w).min(room_w);
         output.shaft_nm = output.shaft_nm + on_the_way_w / w;
