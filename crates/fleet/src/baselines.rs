@@ -131,7 +131,7 @@ fn left_out(
     errors
 }
 
-/// Share of the largest singular value of the sums below which numbers of cars are not told apart.
+/// Share of the largest singular value of the sums below which numbers of cars cannot be separated.
 const SAME: f64 = 1e-12;
 
 /// Sums over cars from which the constants of FB-1 follow; they cost the same for each group that is left out, whatever the number of cars.
