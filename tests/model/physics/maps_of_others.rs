@@ -302,7 +302,7 @@ fn a_matrix_without_a_meaning_says_what_to_type() {
 }
 
 /// Physics: a point below full load whose fuel does not rise is doubted with its row, a line that falls as a whole and work of nothing are refused with
-/// theirs; what is above full load is not judged.
+/// theirs; what is above full load, or below 600 rpm, is not judged.
 #[test]
 fn points_are_judged_below_full_load() {
     let at = |speed: &str, nm: &str, g_kwh: &str| {
@@ -332,7 +332,7 @@ fn points_are_judged_below_full_load() {
     });
     let falling = engine("a.csv", &exchanged.collect::<String>()).unwrap_err();
     assert!(
-        falling.contains("must rise with load at every speed") && falling.contains("line 7"),
+        falling.contains("must rise with load at every speed") && falling.contains("line 18"),
         "{falling}"
     );
     // g/h under the name of kg/h: work of nothing the other way round is a doubt.

@@ -96,10 +96,13 @@ fn the_shift_takes_what_the_clamp_leaves() {
                 "{cc} cc at {} s: {swept_m3} of {left_m3} m3",
                 row.time_s
             );
+            // At one rate for all of the step; a shift that waits for its reversal to be large enough (RC-10) moves in a part of it.
+            let middle = (from_ratio * to_ratio).sqrt();
+            let is_whole = (row.belt_ratio / middle - 1.0).abs() < 1e-6;
             if row.flags.contains(Flags::FLOW_LIMITED) {
                 waits += 1;
                 assert!(
-                    swept_m3 >= 0.9 * left_m3 - 1e-9,
+                    !is_whole || swept_m3 >= 0.9 * left_m3 - 1e-9,
                     "{swept_m3} of {left_m3} m3"
                 );
                 assert!(

@@ -259,7 +259,7 @@ pub(super) fn end<R: Real, T: Driveline<R>>(
     let zero = output.engine_rad_s.splat(0.0);
     let rests = zero.ge(output.engine_rad_s);
     let turning_j = *kinetic_j + inertia.kinetic_w * step.dt_s;
-    *kinetic_j = rests.select(zero, turning_j);
+    *kinetic_j = rests.select(zero, turning_j.max(0.0));
     let cranked = electric.kinetic_w.gt(0.0);
     if cranked.any() {
         inertia.kinetic_w = inertia.kinetic_w + electric.kinetic_w; // SS-4

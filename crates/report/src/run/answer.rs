@@ -364,7 +364,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let falls = falls.map(|own| {
         let ratio = |x: f64| Quantity::Ratio.text(Some(x));
         format!(
-            "lowest clamping safety in any run {}, {} without it (below 1 the belt slips)",
+            "lowest clamping safety of all runs {}, of the car as it is {} (below 1 the belt slips)",
             ratio(own.worst),
             ratio(own.reference_worst)
         )
@@ -380,7 +380,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let size = row.set_by.as_ref().filter(|of| of.share >= SIZE);
     let size = size.map(|of| {
         format!(
-            "what it saves is uncertain mostly by {} ({} % of the variance)",
+            "the largest part of the uncertainty of what it saves is {} ({} % of the variance)",
             of.factor,
             grouped(100.0 * of.share.min(1.0), 0)
         )
@@ -516,7 +516,7 @@ mod tests {
         let lowered = risk(&lever(1.05, 1.38, -0.67), 1874.0).unwrap();
         assert!(
             lowered.contains(
-                "lowest clamping safety in any run 1.05, 1.38 without it (below 1 the belt slips)"
+                "lowest clamping safety of all runs 1.05, of the car as it is 1.38 (below 1 the belt slips)"
             ),
             "{lowered}"
         );

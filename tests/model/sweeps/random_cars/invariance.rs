@@ -208,8 +208,13 @@ const SPEEDS: [(&str, Write); 4] = [
 ];
 const GRADES: [(&str, Write); 2] = [("grade", |x| x), ("grade_percent", |x| 100.0 * x)];
 
-/// The same unit with its last digit changed.
-const LAST_DIGIT: [Write; 2] = [|x| x * (1.0 + f64::EPSILON), |x| x * (1.0 - f64::EPSILON)];
+/// The same unit with its last digit changed: in one direction, or up and down as units do.
+const LAST_DIGIT: [Write; 4] = [
+    |x| x * (1.0 + f64::EPSILON),
+    |x| x * (1.0 - f64::EPSILON),
+    |x| f64::from_bits(x.to_bits() ^ u64::from(x > 0.0)),
+    |x| f64::from_bits(x.to_bits() ^ (3 * u64::from(x > 0.0))),
+];
 
 /// True where sums differ by no more than the solve leaves.
 fn is_same(plain: &[f64], other: &[f64]) -> bool {
@@ -262,7 +267,17 @@ fn units_of_the_table_do_not_matter() {
             let plain = sums(&plain);
             for speed in SPEEDS {
                 for grade in GRADES {
-                    let other = sums(&run(speed, grade));
+                    let rows_b = run(speed, grade);
+                    let other = sums(&rows_b);
+                    if !is_same(&plain, &other) {
+                        let rows_a = run(SPEEDS[0], GRADES[0]);
+                        for (k, (a, b)) in rows_a.iter().zip(&rows_b).enumerate() {
+                            if (a.fuel_kg_s - b.fuel_kg_s).abs() > 1e-7 * a.fuel_kg_s {
+                                println!("DEBUG {k}\n{:?}\n{a:?}\n{b:?}", rows_a[k.max(1) - 1]);
+                                break;
+                            }
+                        }
+                    }
                     if is_same(&plain, &other) {
                         continue;
                     }
