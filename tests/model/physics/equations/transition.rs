@@ -196,7 +196,12 @@ fn val_shift_of_the_shipped_box() {
                     (d.belt_ratio / ratio - 1.0).abs() < if is_bounded { FLOW } else { 1e-9 },
                     "{place}"
                 );
-                if again && !missed {
+                // A bounded shift that meets its target all the same is slower by some of the flow that the shift at once would have had.
+                let is_met = is_bounded && (end / plain.end - 1.0).abs() < 1e-9;
+                if is_met {
+                    let most = 0.5 * demand.flow_down_per_s.max(demand.flow_up_per_s);
+                    assert!(own.abs() <= most * (1.0 + FLOW), "{place}");
+                } else if again && !missed {
                     // No more speed than full load needs, but for losses that fall as torque does.
                     let needed = (0.95..=1.0).contains(&d.throttle);
                     assert!(d.belt_ratio > plain.mean && needed, "{place}");

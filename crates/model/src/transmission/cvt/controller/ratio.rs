@@ -332,7 +332,9 @@ impl<R: Real> RatioControl<R> {
             | wanted.ge(self.low)
             | (d.ratio_before * d.secondary_rad_s).le(d.free_up_to_rad_s)
             | zero.ge(self.hysteresis);
-        let held = reverses & !free & back[0].ge(0.0) & self.hysteresis.ge(back[0]);
+        // A ratio that follows its target begins at it but for rounding, whose sign decides nothing.
+        let begins = back[0].ge(-AT_TARGET) & self.hysteresis.ge(back[0]);
+        let held = reverses & !free & begins;
         if !held.any() {
             return zero;
         }
@@ -522,6 +524,9 @@ const MIN_GENTLE_SHARE: f64 = 0.01;
 
 /// Change of ln I within a step that counts as one: less is rounding (RC-10).
 const MIN_CHANGE: f64 = 1e-6;
+
+/// Distance in ln I from which a ratio counts as away from its target (RC-10).
+const AT_TARGET: f64 = 1e-9;
 
 /// Rate of ln I that counts as a change, 1/s (RC-10).
 const MIN_RATE_PER_S: f64 = 1e-4;
