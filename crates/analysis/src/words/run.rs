@@ -214,7 +214,7 @@ fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f
     }
 }
 
-/// What rate and resolution of a log leave of the fuel and of the difference to each baseline; `None` of speeds that were not smoothed.
+/// Says how far rate and resolution of a log leave the fuel and the difference to each baseline open; `None` of speeds that were not smoothed.
 pub fn resolution_left(summary: &Summary) -> Option<String> {
     let own = summary.recording.as_ref()?;
     let (fuel, run) = (own.fuel?, summary.runs.first()?);

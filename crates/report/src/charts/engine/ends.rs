@@ -52,7 +52,7 @@ pub(super) fn labels(panel: &Panel) -> Vec<Label> {
 }
 
 /// Distance of two names above a panel, and room right of the last one, pixels.
-const BESIDE: (f64, f64) = (8.0, 4.0);
+const GAPS: (f64, f64) = (8.0, 4.0);
 
 /// Writes names above the places where lines leave a panel, each cut to the room before the next one.
 pub(super) fn labels_above(panel: &Panel, width: f64) -> Vec<Label> {
@@ -60,7 +60,7 @@ pub(super) fn labels_above(panel: &Panel, width: f64) -> Vec<Label> {
     ends.sort_by(|a, b| a.at.0.total_cmp(&b.at.0));
     let size = |end: &End| text_width(&end.text, TEXT);
     let lefts: Vec<f64> = ends.iter().map(|end| panel.px(end.at.0) - 4.0).collect();
-    let edge = width - BESIDE.1;
+    let edge = width - GAPS.1;
     let label = |(k, end): (usize, &End)| {
         let is_last = k + 1 == ends.len();
         let left = match is_last {
@@ -68,10 +68,10 @@ pub(super) fn labels_above(panel: &Panel, width: f64) -> Vec<Label> {
             false => lefts[k],
         };
         let before = k.checked_sub(1).map_or(f64::NEG_INFINITY, |before| {
-            lefts[before] + size(&ends[before]) + BESIDE.0
+            lefts[before] + size(&ends[before]) + GAPS.0
         });
         let left = left.max(before.min(lefts[k]));
-        let next = lefts.get(k + 1).map_or(edge, |next| next - BESIDE.0);
+        let next = lefts.get(k + 1).map_or(edge, |next| next - GAPS.0);
         let text = Cut::End.apply(&end.text, TEXT, next - left);
         let place = at(f64::NEG_INFINITY, f64::INFINITY);
         let place = place.shift(left - panel.rect.left, -5.0);

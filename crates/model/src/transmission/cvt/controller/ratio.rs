@@ -134,7 +134,7 @@ impl<R: Real> ColdRise<R> {
     }
 }
 
-/// What the target follows at the beginning of a step.
+/// Inputs of the target at the beginning of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment<R: Real = f64> {
     /// Speed of the secondary once the clutch has locked, rad/s.
