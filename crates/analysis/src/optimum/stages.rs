@@ -156,7 +156,8 @@ impl<'a> Problem<'a> {
             return None;
         }
         let torque_nm = if wanted_nm > 0.0 && braked_w > 0.0 && steady_nm < node.accessories_nm {
-            0.0 // SI-5
+            // SI-5: the brakes give what they take; the rest lags in a drive, and is burnt at once here.
+            (wanted_nm - braked_w / w).clamp(0.0, (node.full_load_nm - steady_nm).max(0.0))
         } else if wanted_nm > 0.0 {
             wanted_nm.min((node.full_load_nm - steady_nm).max(0.0))
         } else {
