@@ -5,14 +5,14 @@
 //! | NC-1 | r = 3.05 D/(2 pi), D = rim + 2 width height | source: CO2MPAS |
 //! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P, up to n_P with no more power than P, nor than on the line from n_T to n_P where the plateau has more | fitted to the CO2MPAS shape of the Rover; held power of charged engines derived from P |
 //! | NC-3 | inertia 0.05 + 0.1 V kg m2, accessories 0.175 V + 0.2021 Nm, V in litres | source: CO2MPAS |
-//! | NC-4 | belt length by GE-3 from centre distance, low ratio and a least running radius of 30 mm; its mass 1.6 kg/m | derived; radius ASSUMED 25 to 35 mm |
+//! | NC-4 | belt length by GE-3 from centre distance, low ratio and a least running radius of 30 mm; its mass 1.6 kg/m, of a chain that of its class | derived; radius ASSUMED 25 to 35 mm |
 //! | NC-6 | heat capacity of the engine by rated power: block 0.525, oil 0.28 kJ/K per kW | derived from ADVISOR |
 //! | NC-7 | units by their definitions | source |
 //! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
 //! | NC-11 | pump of a CVT of a class: 0.062 cc/rev for a newton metre of T, the highest torque of the full-load line | ASSUMED, 0.06 to 0.095: one car of 1995 has 8 cc/rev for 130 Nm, a box for 200 Nm 19 (SAE 2004-40CVT-49); the lower end, as larger pumps have a second port that is relieved (Toyota K313) and the pump of the classes has not |
 //! | NC-12 | its launch device holds full load at rest at 2400 rpm with a converter, at 2500 rpm with a clutch: capacity T(2400)/2.4^2, gain T(2500)/(2500 - n_engage)^2 | ASSUMED, 2050 to 2900 and 2350 to 2650 rpm: service data of CVT cars, Honda Fit 2020 2000 to 2400, Nissan MR18DE 2600 to 3150, Subaru Legacy 2.5 1900 to 2700, CR-Z 1900 to 2200, SX4 2300 to 2500, with no fall over 120 to 240 Nm. EPA's ALPHA has 3030/sqrt(T) rpm/sqrt(Nm), 2900 rpm of 0.93 T: above four of the five |
 //! | NC-13 | its pistons: the largest pressure of the class grips S T in low, S safety of the clamp law; the primary over the secondary as the class has it | derived from PC-3; the torque that a converter adds at rest is not in it: the engine is held there, ASSUMED. With it (1.9 times 0.9 T) pistons are a third larger and HWFET takes 1.9 % more, as the least pressure presses on them too |
-//! | NC-14 | its belt above 200 Nm: 1.25 times the mass and the width of the bands | ASSUMED: belts of 24 and 30 mm; 180 to 250 Nm |
+//! | NC-14 | its pushing belt above 200 Nm: 1.25 times the mass and the width of the bands | ASSUMED: belts of 24 and 30 mm; 180 to 250 Nm |
 //! | NC-15 | its metal: (40 + 0.18 T) kg in place of 60 kg | ASSUMED, 10 kg more or less. No rule for its oil: 5.7 l at 145 Nm, 8.3 l at 174 Nm |
 //! | NC-16 | N/V in rpm per km/h: i_top = N/V 3.6 r 2 pi/60, final drive i_top/I_high, or gears times i_top/i_last; a final drive without gears multiplies all overall ratios of a manual box | derived |
 //! | NC-17 | line of gentle driving of a CVT of a class with a N/V: 0.8 times the speed of its highest ratio at 80 km/h, 1000 to 1300 rpm; above 64 km/h or so the highest ratio is the line | ASSUMED, 0.7 to 0.9: cars of 2010 to 2019 turn 1044 to 1675 rpm at 80 km/h (US lists, 129), the median 1390 gives the 1100 of the classes |
