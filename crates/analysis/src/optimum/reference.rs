@@ -70,7 +70,6 @@ impl Reference {
             holds.push(hold.unwrap_or(Hold {
                 ratio: row.belt_ratio,
                 clamp: None,
-                end: None,
                 paced: false,
             }));
             rows.push(*row);

@@ -37,11 +37,10 @@ impl Reader<'_, '_> {
             };
             problems.add(problem.in_file(self.file).key(quantity.name()));
         }
-        let rows = chosen.filters.iter().chain(&chosen.only_no_unit).cloned();
         let filled = Filled::of(
             self.sheet,
             &Chosen {
-                filters: rows.collect(),
+                filters: chosen.filters.clone(),
                 ..Chosen::default()
             },
         );

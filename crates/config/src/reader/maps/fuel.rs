@@ -107,14 +107,6 @@ const WORDS: &[(&str, &str)] = &[
     ("crankshaft_speed", "speed"),
     ("t", "torque"),
     ("m", "torque"),
-    ("md", "torque"),
-    ("drehmoment", "torque"),
-    ("motordrehmoment", "torque"),
-    ("drehzahl", "speed"),
-    ("motordrehzahl", "speed"),
-    ("kraftstoffverbrauch", "fuel"),
-    ("couple", "torque"),
-    ("regime", "speed"),
     ("trq", "torque"),
     ("tq", "torque"),
     ("engine_torque", "torque"),
@@ -182,7 +174,6 @@ pub(super) fn columns() -> Vec<Column> {
         };
         match gives {
             Gives::Fuel(_) => column.or_empty(),
-            Gives::Load(Load::Bmep) => column.spare(),
             _ => column,
         }
     };
