@@ -21,15 +21,9 @@ fn document() -> Document {
         Picture {
             svg: svg.clone(),
             table: table.clone(),
-            ..Picture::default()
         },
     );
-    let again = Picture {
-        svg,
-        table,
-        ..Picture::default()
-    };
-    section.figure("y", "Again", again);
+    section.figure("y", "Again", Picture { svg, table });
     Document {
         title: "T \"q\" <i>".into(),
         sections: vec![section],
