@@ -32,11 +32,11 @@
     for (const one of document.querySelectorAll(".lit")) one.classList.remove("lit");
     if (!name) return;
     for (const table of document.querySelectorAll("main table")) {
-      const marks = table.closest("figure.figure")?.querySelector(".drawing svg");
+      const marks = table.closest("figure.figure");
       [...table.tBodies[0].rows].forEach((row, index) => {
         if (component(row) !== name) return;
         row.classList.add("lit");
-        marks?.querySelectorAll(`[data-row="${index}"]`).forEach((mark) => mark.classList.add("lit"));
+        marks?.querySelectorAll(`.drawing svg [data-row="${index}"]`).forEach((mark) => mark.classList.add("lit"));
       });
     }
   };
@@ -127,11 +127,14 @@
   };
 
   const connect = (figure) => {
-    const drawing = figure.querySelector(".drawing");
-    const svg = drawing.querySelector("svg");
     const table = figure.querySelector("details table");
-    if (!svg || !table) return;
+    if (!table) return;
     saved(figure, table);
+    for (const drawing of figure.querySelectorAll(".drawing")) connected(figure, drawing, table);
+  };
+  const connected = (figure, drawing, table) => {
+    const svg = drawing.querySelector("svg");
+    if (!svg) return;
     // The words of a title would come up as a second hint of the browser's own.
     const title = svg.querySelector(":scope > title");
     if (title) { svg.setAttribute("aria-label", title.textContent); title.remove(); }

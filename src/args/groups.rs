@@ -203,7 +203,7 @@ pub struct ColumnsArgs {
     /// without names the columns in their order: time:s,speed:mph
     #[arg(long, value_name = "LIST")]
     pub columns: Option<String>,
-    /// Repairs of a log: empty, stamps, negative, spikes and smooth are made, sort and cut where they are named, no-smooth leaves one
+    /// Repairs of a log: empty, stamps, negative, spikes, held and smooth are made, sort and cut where they are named, no-smooth leaves one
     /// out, none all [default: auto]
     #[arg(long, value_name = "LIST")]
     pub repair: Option<String>,

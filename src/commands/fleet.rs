@@ -14,7 +14,7 @@ use cvtcycle::fleet::errors::{
 };
 use cvtcycle::fleet::fit::{self, FitKey, FleetFit};
 use cvtcycle::fleet::{
-    ColumnMap, DrivenCar, Fleet, FleetCar, Refused, Setting, Sheet, drive, spread, tables,
+    ColumnMap, DrivenCar, Fleet, FleetCar, Refused, Setting, Sheet, spread, tables,
 };
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, signed};
@@ -119,6 +119,8 @@ struct FleetSummary {
     errors: Vec<GroupErrors>,
     pair_errors: Vec<PairErrors>,
     baselines: Vec<Baseline>,
+    /// How many cars the ranges hold that are made from the cars of other groups.
+    coverage: Vec<spread::Coverage>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     changes: Vec<ErrorChange>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -210,12 +212,12 @@ impl Execute for FleetArgs {
     fn run(&self, mut plan: FleetPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
         let driven_with = |set: &[Setting]| -> Result<(Fleet, Vec<DrivenCar>), Problems> {
-            let fleet = Fleet::from_sheet(&plan.sheet, &plan.map, &plan.tests, set)?;
-            let cars = fleet.cars.len() as u64;
+            let cars = plan.sheet.rows.len() as u64;
             let progress = Progress::counted("cars", cars, self.results.output.quiet);
-            let driven = drive(&fleet.cars, &plan.tests, plan.dt_s, &progress);
+            let (sheet, map, tests) = (&plan.sheet, &plan.map, &plan.tests);
+            let driven = Fleet::driven(sheet, map, tests, set, plan.dt_s, &progress);
             progress.finish();
-            Ok((fleet, driven))
+            driven
         };
         let (fleet, driven) = driven_with(&plan.set)?;
         let entries: Vec<Entry> = fleet.cars.iter().zip(&driven).collect();
@@ -241,7 +243,9 @@ impl Execute for FleetArgs {
             ([], _) | (_, None) => None,
             (keys, Some(column)) => {
                 let progress = Progress::evaluations(self.results.output.quiet);
-                let found = fit::fit(&fleet, &plan.tests, keys, column, plan.dt_s, &progress);
+                // The values of the cars again: those of the drives are gone.
+                let made = Fleet::from_sheet(&plan.sheet, &plan.map, &plan.tests, &plan.set)?;
+                let found = fit::fit(&made, &plan.tests, keys, column, plan.dt_s, &progress);
                 progress.finish();
                 Some(found.map_err(|found| cite("--fit", found))?)
             }
@@ -260,6 +264,7 @@ impl Execute for FleetArgs {
             errors: by_group(&entries, &figures, &fleet.groups),
             pair_errors: pair_errors(&pairs, &figures),
             baselines: baselines(&entries, leave_out),
+            coverage: spread::coverages(&entries, &pairs, &figures, leave_out.unwrap_or_default()),
             changes: changes(&before, &entries, &figures),
             fit,
         };
@@ -376,7 +381,7 @@ fn pictures(
                 Some(FleetError {
                     car: entry.0.id.clone(),
                     group: group(entry.0),
-                    over: entry.0.top_rad_m() * RPM_PER_KMH,
+                    over: entry.0.facts.top_rad_m * RPM_PER_KMH,
                     transmission: box_word(entry.0).to_owned(),
                     figure: name.clone(),
                     error_percent: error_percent(*entry, column)?,

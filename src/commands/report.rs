@@ -185,7 +185,12 @@ impl Execute for ReportArgs {
             .map_or(("", &[][..]), |(first, rest)| (first, rest));
         let missing = &document.warnings;
         let json = serde_json::json!({ "report": report, "figures": figures, "missing": missing, "answer": document.answer });
-        let (json, warnings) = (json_text(&json)?, document.warnings.clone());
+        let (json, mut warnings) = (json_text(&json)?, document.warnings.clone());
+        let failing = document.answer.as_ref().filter(|answer| {
+            let [failed, all] = answer.failed();
+            2 * failed > all
+        });
+        warnings.extend(failing.and_then(|answer| answer.failures_in_words()));
         let results = Results::new(json, warnings, WrittenFiles::default());
         let table = || format!("{report}\n{} figures next to it\n", figures.len());
         Ok(results.output(&self.results.output, table))

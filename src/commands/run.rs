@@ -10,18 +10,21 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clap::Args;
-use cvtcycle::analysis::draws::{drive, prepare};
+use cvtcycle::analysis::answer::{Answer, drive_cars};
+use cvtcycle::analysis::draws::prepare;
 use cvtcycle::analysis::run::{RunQuestion, summary};
+use cvtcycle::analysis::words::run::input_doubts;
 use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{TWIN, is_path, is_twin};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{StartWord, name_run, start_on};
+use cvtcycle::output::summary::{StartWord, Summary, name_run, start_on};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
 use cvtcycle::validate::published;
+use serde::Serialize;
 
 use super::threads::in_parallel;
 use super::vehicles::{self, Baselines, CaseArgs, ComparedArgs, ComparedVehicles, RunVehicle};
@@ -81,8 +84,18 @@ pub struct RunArgs {
     output: OutputArgs,
 }
 
-/// Number of draws of a change without --draws: the least that give its ends a range of their own (ES-3).
-const DRAWS_OF_CHANGE: u64 = 72;
+/// Number of draws of a change without --draws: whole groups of runs that are driven side by side, and enough that runs which agree show 90 % of all. The first lines
+/// say how many would give the ends a range of their own (ES-3).
+const DRAWS_OF_CHANGE: u64 = 40;
+
+/// A summary with the answer of the draws.
+#[derive(Serialize)]
+struct WithAnswer<'a> {
+    #[serde(flatten)]
+    summary: &'a Summary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    answer: Option<&'a Answer>,
+}
 
 /// Checked input of a run.
 pub struct RunPlan {
@@ -242,11 +255,13 @@ impl Execute for RunArgs {
             published: Some(published),
         };
         let mut summary = summary(&question, &driven);
-        if let Some(study) = &plan.draws {
-            let drawn = drive(study, &NoProgress)?.unwrap_or_default();
-            for (comparison, (_, drawn)) in summary.comparison.iter_mut().zip(drawn) {
-                comparison.interval = Some(drawn);
-            }
+        let mut answer = match &plan.draws {
+            Some(study) => drive_cars(study, &NoProgress)?,
+            None => None,
+        };
+        if let Some(answer) = &mut answer {
+            answer.merge(&mut summary);
+            answer.doubts = input_doubts(&summary);
         }
         let mut record = None;
         if out.is_some() {
@@ -256,7 +271,10 @@ impl Execute for RunArgs {
             name_run(&mut summary, record.insert(inputs));
         }
         let json = match out.is_some() || self.output.json() {
-            true => json_text(&summary)?,
+            true => json_text(&WithAnswer {
+                summary: &summary,
+                answer: answer.as_ref(),
+            })?,
             false => String::new(),
         };
         let files = WrittenFiles::write(out, |dir| {

@@ -7,7 +7,7 @@ mod screen;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
-use cvtcycle::config::{Problem, Problems, render};
+use cvtcycle::config::{Problem, Problems, Proposal, render};
 pub use cvtcycle::output::escape::json_text;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::table::wrapped;
@@ -262,29 +262,49 @@ pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
 /// Problems as text, and below them the same call with the columns with which a file is read.
 pub fn problems_text(problems: &[Problem], colour: bool) -> String {
     let mut text = render(problems, colour);
-    let mut proposals: Vec<&str> = problems
+    let mut proposals: Vec<&Proposal> = problems
         .iter()
-        .map(Problem::proposed)
-        .filter(|columns| !columns.is_empty())
+        .filter_map(|problem| problem.proposal.as_deref())
         .collect();
     proposals.dedup();
-    for columns in proposals {
-        text += &format!("try: {}\n", with_columns(std::env::args().skip(1), columns));
+    for own in proposals {
+        text += &format!("try: {}\n", with_choice(std::env::args().skip(1), own));
     }
     text
 }
 
-/// A call of the program with these columns in place of others, as a shell takes it.
-fn with_columns(arguments: impl Iterator<Item = String>, columns: &str) -> String {
+/// A call of the program with these columns in place of others, and with these repairs besides others, as a shell takes it.
+fn with_choice(arguments: impl Iterator<Item = String>, own: &Proposal) -> String {
+    let choices = [("--columns", &own.columns), ("--repair", &own.repair)];
     let mut words = vec!["cvtcycle".to_owned()];
-    let mut is_value = false;
+    let mut repairs: Vec<String> = Vec::new();
+    let mut before: Option<&str> = None;
     for argument in arguments {
-        let is_old = std::mem::replace(&mut is_value, argument == "--columns");
-        if !(is_old || is_value || argument.starts_with("--columns=")) {
+        let (name, value) = match (before.take(), argument.split_once('=')) {
+            (Some(name), _) => (name, Some(argument.as_str())),
+            (None, Some((name, value))) => (name, Some(value)),
+            (None, None) => (argument.as_str(), None),
+        };
+        let Some((name, _)) = choices
+            .iter()
+            .find(|(own, text)| *own == name && !text.is_empty())
+        else {
             words.push(quoted(&argument));
+            continue;
+        };
+        match value {
+            None => before = Some(name),
+            Some(value) if *name == "--repair" => repairs.push(value.to_owned()),
+            Some(_) => {}
         }
     }
-    words.extend(["--columns".to_owned(), quoted(columns)]);
+    if !own.columns.is_empty() {
+        words.extend(["--columns".to_owned(), quoted(&own.columns)]);
+    }
+    if !own.repair.is_empty() {
+        repairs.push(own.repair.clone());
+        words.extend(["--repair".to_owned(), quoted(&repairs.join(","))]);
+    }
     words.join(" ")
 }
 

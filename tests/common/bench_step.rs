@@ -113,6 +113,7 @@ impl Bench {
             dt_s: 100.0, // long enough for any change of engine speed
             engine_off: false,
             neutral_share: 0.0,
+            kinetic_j: 0.5 * car.engine.inertia_kg_m2 * engine.idle_rad_s * engine.idle_rad_s,
         };
         let mut state: TransmissionState = car.transmission.start(&around);
         if let Transmission::Cvt(cvt) = &car.transmission {

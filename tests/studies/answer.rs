@@ -70,7 +70,8 @@ fn a_document_has_one_sample() {
     });
     assert_eq!(whole.differences, differences(&[]));
     assert_eq!(whole.differences[0].0, "rover_216_5mt");
-    assert_eq!(whole.levers.blocks[0].rows.len(), 1);
+    assert_eq!(whole.differences[0].1.fuel_l_per_100km, whole.fuel());
+    assert_eq!(whole.levers.as_ref().unwrap().blocks[0].rows.len(), 1);
     let pump = whole
         .prices
         .iter()

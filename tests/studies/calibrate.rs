@@ -82,6 +82,76 @@ points = "data.csv"
 sd = 0.1
 "#;
 
+/// Property: a number with `also` is one for the keys of both boxes: computed values at a truth give it back, and each fitted file has it at the key that its
+/// box has.
+#[test]
+fn one_number_sets_the_keys_of_two_boxes() {
+    const PLAN: &str = r#"
+[calibration]
+starts = 1
+leave_out = false
+
+[sources.manual]
+source = "bench"
+vehicle = "rover_216_5mt"
+ratio = [3, 5]
+speed_rpm = [1000, 3000]
+temp_degc = [20, 80]
+
+[[parameter]]
+key = "transmission.cvt.final_drive.bearing_factor"
+also = ["transmission.manual.gears.bearing_factor"]
+vehicles = ["rover_216_cvt", "rover_216_5mt"]
+low = 0
+high = 15
+
+[[data]]
+name = "spin loss"
+from = "made by the program"
+points = "data.csv"
+sd = 1e-6
+
+[[data]]
+name = "manual box"
+from = "made by the program"
+compute = "mean(manual: total_nm)"
+unit = "Nm"
+value = 1
+sd = 1e-6
+"#;
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut plan = plan_with(&folder, &spin_points(), PLAN);
+    let model = Model::new(&plan).expect("a sound plan");
+    let at = |factor: f64| model.predict(&[factor]).expect("an answer").computed;
+    let (low, high) = (at(5.0), at(6.3));
+    assert!(low.iter().zip(&high).all(|(low, high)| low < high));
+    measure(&mut plan, &[6.3], 1);
+    let outcome = solved(&plan);
+    assert_eq!(outcome.parameters.len(), 1);
+    let fitted_to = outcome.parameters[0].value;
+    assert!((fitted_to - 6.3).abs() < 1e-4, "{fitted_to}");
+    let files = fitted::files(&plan, &outcome, "2024-02-29").expect("files");
+    for (name, own, other) in [
+        ("rover_216_cvt_fitted.toml", "cvt", "manual"),
+        ("rover_216_5mt_fitted.toml", "manual", "cvt"),
+    ] {
+        let file = files.iter().find(|(file, _)| file == name);
+        let (_, text) = file.unwrap_or_else(|| panic!("no {name}"));
+        let document: toml::Table = text.parse().expect("TOML");
+        let table = &document["transmission"];
+        let part = match own {
+            "cvt" => &table[own]["final_drive"],
+            _ => &table[own]["gears"],
+        };
+        let value = part["bearing_factor"]["value"].as_float();
+        assert!(
+            (value.expect("a number") - fitted_to).abs() < 1e-5,
+            "{name}"
+        );
+        assert!(table.get(other).is_none(), "{name} has a table of {other}");
+    }
+}
+
 /// Property: intervals of 1 and 1.96 standard errors contain the truth as often as they should, for each parameter. Limits of 3.3 standard
 /// deviations of the binomial: one false alarm in some 170 sets of six numbers; the seeds are fixed.
 #[test]

@@ -144,6 +144,7 @@ fn by_brute_force(
             let hold = Hold {
                 ratio,
                 clamp: None,
+                end: None,
                 paced: false,
             };
             let row = drive.step_held(&problem.steps[k as usize + 1], &hold).0;

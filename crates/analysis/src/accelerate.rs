@@ -328,7 +328,7 @@ fn flags_s(of: &Accelerated) -> BTreeMap<String, f64> {
     // The end speed of a step is sought so that rounding is all that is missing.
     let all = Flags::NAMES
         .iter()
-        .filter(|(flag, _)| *flag != Flags::MISSED_TRACE);
+        .filter(|(flag, _)| ![Flags::MISSED_TRACE, Flags::FULL_LOAD].contains(flag));
     let all = all.map(|(flag, name)| ((*name).to_owned(), seconds(*flag)));
     all.filter(|(_, seconds)| *seconds > 0.0).collect()
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::draws::{Compared, OtherCar, OtherKind, Parts, differences};
+use crate::draws::{Compared, OtherCar, OtherKind, Own, Parts, differences, own};
 use crate::levers::{
     Combine, Lever, LeverAnswer, LeverFile, LeverNotes, LeverRequest, lever_answer,
     prepare as prepare_levers,
@@ -18,7 +18,7 @@ use cvtcycle_config::setup::{Kind, Options, Setup};
 use cvtcycle_config::{Override, Problem, Problems};
 use cvtcycle_output::Component;
 use cvtcycle_output::progress::Progress;
-use cvtcycle_output::summary::{DrawnDifference, FAILED_SHARES};
+use cvtcycle_output::summary::{DrawnDifference, FAILED_SHARES, Summary as RunResultSummary};
 use cvtcycle_study::answer::Information;
 use cvtcycle_study::execute::outputs::FUEL;
 use cvtcycle_study::execute::{End, Study};
@@ -30,7 +30,7 @@ use cvtcycle_study::{StudyManifest, StudyTable, TableSource};
 pub use crate::draws::{HEARD_RPM, PLAN, SEED};
 
 /// Version of an [`Answer`] as JSON.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 /// Draws of an answer: with 256 the ends of 90 % have intervals of their own (ES-3), and a failure in 1 % of all cases is seen.
 pub const DRAWS: u64 = 256;
 
@@ -59,23 +59,58 @@ pub struct Answer {
     pub plan: String,
     /// Draws.
     pub draws: u64,
+    /// Draws in which the car as it is fails.
+    pub failed_draws: usize,
+    /// Checks that fail in them with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
     /// Quantiles 0.05, 0.5 and 0.95 of the car's fuel over the draws in which it works, L/100 km.
     pub fuel_l_per_100km: [f64; 3],
     /// The car against itself before the change and against each baseline, by name.
     pub differences: Vec<(String, DrawnDifference)>,
     /// Quantiles 0.05, 0.5 and 0.95 of the fuel that is saved without a loss, per cent, by component (AW-2).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub prices: Vec<(String, [f64; 3])>,
-    /// Changes of the design.
-    pub levers: LeverAnswer,
+    /// Changes of the design; none of a question without them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub levers: Option<LeverAnswer>,
     /// Value of knowing each factor: the spread that is left of the difference to the first baseline, or of the fuel without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub information: Option<Information>,
+    /// Estimate of the error of the fuel by the length of the steps, per cent; none where it was not made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_error_percent: Option<f64>,
+    /// Doubts about the inputs, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<String>,
 }
 
 impl Answer {
+    /// The answer of a sample of cars, without prices and levers.
+    fn of_sample(study: &Study, parts: &Parts) -> Self {
+        let Own {
+            fuel_l_per_100km,
+            failed,
+            reasons,
+        } = own(study, parts);
+        Answer {
+            schema: SCHEMA,
+            plan: PLAN.to_owned(),
+            draws: study.points,
+            failed_draws: failed,
+            reasons,
+            fuel_l_per_100km,
+            differences: differences(study, parts),
+            prices: Vec::new(),
+            levers: None,
+            information: None,
+            step_error_percent: None,
+            doubts: Vec::new(),
+        }
+    }
+
     /// Draws in which the car as it is fails, and all.
     pub fn failed(&self) -> [usize; 2] {
-        let block = self.levers.blocks.first();
-        block.map_or([0, 0], |block| [block.failed, block.n])
+        [self.failed_draws, self.draws as usize]
     }
 
     /// True where few enough draws fail for the others to give ranges (AW-3).
@@ -90,16 +125,47 @@ impl Answer {
         (self.is_known() && is_finite).then_some(self.fuel_l_per_100km)
     }
 
+    /// Puts the ranges of this answer in place of those of other samples: a document has one.
+    pub fn merge(&self, summary: &mut RunResultSummary) {
+        // Without draws of the baselines the car before its change is the only one.
+        if self.differences.len() <= summary.comparison.len() {
+            let drawn = self.differences.iter().map(|(_, drawn)| drawn.clone());
+            summary.take_drawn(drawn.collect());
+        }
+        let Some(run) = summary.runs.first_mut() else {
+            return;
+        };
+        run.drawn = self.fuel();
+        if let Some(price) = &mut run.price {
+            for (name, [low, _, high]) in &self.prices {
+                if let Some(loss) = price.losses.get_mut(name) {
+                    loss.range = self.is_known().then_some([*low, *high]);
+                }
+            }
+        }
+    }
+
     /// "57 of 256 runs of the car with uncertain values varied fail: gross_slip in 57", where they are more than a few (AW-3).
     pub fn failures_in_words(&self) -> Option<String> {
         let [failed, n] = self.failed();
-        let block = self.levers.blocks.first()?;
         (failed as f64 > FAILED_SHARES[0] * n as f64).then(|| {
-            let reasons = block.reasons.iter().map(|(name, n)| format!("{name} in {n}"));
+            let reasons = self.reasons.iter().map(|(name, n)| format!("{name} in {n}"));
             let reasons = reasons.collect::<Vec<_>>().join(", ");
             format!("{failed} of {n} runs of the car as it is, its uncertain values varied, fail: {reasons}")
         })
     }
+}
+
+/// Drives all draws of a sample of cars ([`crate::draws::prepare`]); `None` where the progress has stopped them.
+///
+/// # Errors
+/// Values with which the study cannot be driven.
+pub fn drive_cars(study: &Study, progress: &dyn Progress) -> Result<Option<Answer>, Problems> {
+    let parts = Parts::default();
+    Ok(match study.execute(&BTreeSet::new(), &parts, progress)? {
+        End::Stopped => None,
+        End::Complete => Some(Answer::of_sample(study, &parts)),
+    })
 }
 
 /// The changes of a design that the program knows.
@@ -216,14 +282,10 @@ fn answer(study: &Study, parts: &Parts) -> Result<Answer, Problem> {
     };
     let spread = first.unwrap_or_else(|| fuel[0].clone());
     Ok(Answer {
-        schema: SCHEMA,
-        plan: PLAN.to_owned(),
-        draws: manifest.points,
-        fuel_l_per_100km: ends(&fuel[0]),
         prices: of_kind(OtherKind::WithoutLoss).map(price).collect(),
         information: Information::of_sample(&manifest.plan, &spread, confidence),
-        differences: differences(study, parts),
-        levers,
+        levers: Some(levers),
+        ..Answer::of_sample(study, parts)
     })
 }
 

@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, baseline_of, is_twin, load, name_of};
 use cvtcycle_config::{Acts, Override, Problem, Problems};
 use cvtcycle_output::progress::{NoProgress, Progress};
-use cvtcycle_output::summary::DrawnDifference;
+use cvtcycle_output::summary::{DrawnDifference, FAILED_SHARES};
 use cvtcycle_study::execute::outputs::FUEL;
 use cvtcycle_study::execute::{Column, Columns, End, PartWriter, Study, relative, with_ranges};
 use cvtcycle_study::plan::{Base, Cars, Design, Factor, Plan};
@@ -380,6 +380,7 @@ pub(crate) fn differences(study: &Study, parts: &Parts) -> Vec<(String, DrawnDif
 fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> DrawnDifference {
     let cars = study.cars.len();
     let (mut list, mut failed) = (Vec::new(), BTreeMap::<String, u64>::new());
+    let mut own_fuel = Vec::new();
     for part in 0..study.parts() {
         let cells = parts.columns(study, part, &["status", "reason", FUEL]);
         let [
@@ -392,6 +393,9 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
         };
         let points = status.chunks_exact(cars).zip(reason.chunks_exact(cars));
         for ((status, reason), fuel) in points.zip(fuel.chunks_exact(cars)) {
+            if &*status[0] == "ok" {
+                own_fuel.push(fuel[0]);
+            }
             if [0, other].iter().all(|car| &*status[*car] == "ok") {
                 let (own, of) = match is_run {
                     true => (fuel[other], fuel[0]),
@@ -418,6 +422,60 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
         reasons,
         more: more.k as u64,
         percent: [0.05, 0.5, 0.95].map(|p| summary.quantile(p)),
+        fuel_l_per_100km: quantiles_of_most(&own_fuel, study.points).filter(|_| !is_run),
+    }
+}
+
+/// Quantiles 0.05, 0.5 and 0.95 of numbers of a car that works in so many of the draws; none where too many fail (AW-3).
+fn quantiles_of_most(of: &[f64], draws: u64) -> Option<[f64; 3]> {
+    let failed = draws as f64 - of.len() as f64;
+    let summary = Summary::new(of, Confidence::default());
+    let is_known = !of.is_empty() && failed <= FAILED_SHARES[1] * draws as f64;
+    is_known.then(|| [0.05, 0.5, 0.95].map(|p| summary.quantile(p)))
+}
+
+/// A car by itself over all draws.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Own {
+    /// Quantiles 0.05, 0.5 and 0.95 of its fuel over the draws in which it works, L/100 km.
+    pub fuel_l_per_100km: [f64; 3],
+    /// Draws in which it fails, and the names of the checks with their counts, the commonest first.
+    pub failed: usize,
+    pub reasons: Vec<(String, usize)>,
+}
+
+/// The first car of a study by itself.
+pub(crate) fn own(study: &Study, parts: &Parts) -> Own {
+    let cars = study.cars.len();
+    let (mut list, mut failed, mut count) = (Vec::new(), BTreeMap::<String, usize>::new(), 0);
+    for part in 0..study.parts() {
+        let cells = parts.columns(study, part, &["status", "reason", FUEL]);
+        let [
+            Values::Text(status),
+            Values::Text(reason),
+            Values::Number(fuel),
+        ] = &cells[..]
+        else {
+            continue;
+        };
+        for (row, status) in status.iter().enumerate().step_by(cars) {
+            if &**status == "ok" {
+                list.push(fuel[row]);
+                continue;
+            }
+            count += 1;
+            for name in failed_checks(&reason[row]).collect::<BTreeSet<_>>() {
+                *failed.entry(name).or_default() += 1;
+            }
+        }
+    }
+    let mut reasons: Vec<(String, usize)> = failed.into_iter().collect();
+    reasons.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
+    let summary = Summary::new(&list, Confidence::default());
+    Own {
+        fuel_l_per_100km: [0.05, 0.5, 0.95].map(|p| summary.quantile(p)),
+        failed: count,
+        reasons,
     }
 }
 

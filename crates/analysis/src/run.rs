@@ -208,11 +208,6 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     }
 }
 
-/// Half width by which fuel and difference of a smoothed recording are open besides what the strength of the smoothing leaves: per cent of the fuel, and
-/// points. Twice the rms error of UDDS, HWFET, US06, NYCC and Artemis urban, rounded to whole km/h and mph at 10, 4, 2 and 1 Hz or with 0.05 m/s of
-/// noise, and smoothed (tests/cli/commands/log.rs repeats it).
-const LEFT: [f64; 2] = [1.0, 0.5];
-
 /// How far rate, resolution and smoothing of a recording leave the results open (LG-6): the cars drive it with a quarter and four times the density of
 /// LG-3 too.
 fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
@@ -220,9 +215,9 @@ fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let Some((own, recorded)) = summary.recording.as_mut().zip(recorded) else {
         return;
     };
-    if recorded.bounds.is_empty() {
+    let Some(left) = recorded.left else {
         return;
-    }
+    };
     let conditions = Conditions {
         keep_rows: false,
         ..of.conditions
@@ -263,12 +258,12 @@ fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     };
     let fuel = hull(&|fuels| *fuels.first()?);
     own.fuel =
-        fuel.map(|[low, high]| [low * (1.0 - 0.01 * LEFT[0]), high * (1.0 + 0.01 * LEFT[0])]);
+        fuel.map(|[low, high]| [low * (1.0 - 0.01 * left[0]), high * (1.0 + 0.01 * left[0])]);
     own.percent = (1..driven.len())
         .map(|k| {
             let percent =
                 hull(&|fuels| Some(100.0 * ((*fuels.first()?)? / (*fuels.get(k)?)? - 1.0)));
-            percent.map(|[low, high]| [low - LEFT[1], high + LEFT[1]])
+            percent.map(|[low, high]| [low - left[1], high + left[1]])
         })
         .collect();
 }

@@ -9,8 +9,8 @@ use std::path::Path;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::outcome::{Outcome, Parameter};
-use super::plan::{CalibrationPlan, problem, stem};
-use cvtcycle_config::setup::{Kind, NamedBy, is_path, text_of};
+use super::plan::{CalibrationPlan, FreeParameter, problem, stem};
+use cvtcycle_config::setup::{Kind, NamedBy, Options, ParamSet, is_path, text_of};
 use cvtcycle_config::{Acts, Override, ProblemKind, Problems, Target};
 
 /// Significant digits of a fitted value, far beyond its standard error.
@@ -89,10 +89,28 @@ impl Job<'_> {
         // The keys come first, in the order of the plan.
         let all = self.plan.parameters.iter().zip(&self.outcome.parameters);
         let own = all.filter(move |(free, _)| free.is_of(vehicle, self.plan));
-        own.filter_map(move |(free, p)| {
-            let (of, key) = Target::from_key(&free.key);
-            (of == target).then_some((key, p))
-        })
+        let keys = own.flat_map(move |(free, p)| {
+            let keys = self.keys(vehicle, free).into_iter();
+            keys.map(move |key| (Target::from_key(key), p))
+        });
+        keys.filter_map(move |((of, key), p)| (of == target).then_some((key, p)))
+    }
+
+    /// Keys of a parameter that a vehicle has. One that sets several is looked up in the car, since the file may inherit them.
+    fn keys<'b>(&self, vehicle: &str, free: &'b FreeParameter) -> Vec<&'b str> {
+        let mut keys: Vec<&str> = free.keys().collect();
+        if free.also.is_empty() {
+            return keys;
+        }
+        let options = match vehicle == self.plan.car.vehicle {
+            true => self.plan.car.options(None),
+            false => Options::default(),
+        };
+        // The model was loaded from it before.
+        if let Ok(base) = ParamSet::load(vehicle, &options) {
+            keys.retain(|key| base.param(key).is_ok());
+        }
+        keys
     }
 
     /// The file of another vehicle of the plan with its values; those of a fluid are in the files of the plan's own.

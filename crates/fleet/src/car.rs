@@ -15,6 +15,47 @@ use crate::setting::Setting;
 use crate::sheet::{Row, Sheet};
 use crate::{Fleet, Refused};
 
+/// Values of a car for its drives.
+#[derive(Clone, Debug)]
+pub struct CarSets {
+    /// Values of the car.
+    pub params: ParamSet,
+    /// For tests that give it options of their own, those values; the test's factor on the road load is then in them.
+    pub by_test: BTreeMap<String, ParamSet>,
+    /// Of a car with a CVT that is a pair: its twin by the rules of TW-1 to TW-4.
+    pub twin: Option<ParamSet>,
+}
+
+/// Numbers of a car by which errors are compared.
+#[derive(Clone, Copy, Debug)]
+pub struct CarFacts {
+    /// True with a CVT.
+    pub is_cvt: bool,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Displacement of the engine, m3.
+    pub displacement_m3: f64,
+    /// Engine speed over road speed in the highest ratio, rad/m.
+    pub top_rad_m: f64,
+}
+
+impl CarFacts {
+    fn of(params: &ParamSet) -> Self {
+        let vehicle = params.vehicle();
+        let overall = match vehicle.transmission() {
+            Transmission::Cvt(cvt) => cvt.ratio.high * cvt.final_drive.ratio,
+            Transmission::Manual(manual) => manual.overall.last().copied().unwrap_or(f64::NAN),
+        };
+        let road = &vehicle.road_load.base;
+        CarFacts {
+            is_cvt: vehicle.transmission().is_cvt(),
+            mass_kg: road.mass_kg,
+            displacement_m3: vehicle.engine().displacement_m3,
+            top_rad_m: overall / road.wheel_radius_m,
+        }
+    }
+}
+
 /// A car of a table.
 #[derive(Clone, Debug)]
 pub struct FleetCar {
@@ -22,33 +63,18 @@ pub struct FleetCar {
     pub id: String,
     /// Line of its row.
     pub line: u64,
-    /// Values of the car.
-    pub params: ParamSet,
-    /// For tests that give it options of their own, those values; the test's factor on the road load is then in them.
-    pub by_test: BTreeMap<String, ParamSet>,
+    /// Numbers by which its errors are compared.
+    pub facts: CarFacts,
+    /// Values for its drives; `None` after [`Fleet::driven`], as they take half a megabyte a car.
+    pub sets: Option<CarSets>,
     /// Doubts about its numbers.
     pub doubts: Vec<String>,
     /// Measured figures by column, L/100 km.
     pub measured: BTreeMap<String, f64>,
     /// Name of the car that it is a pair with; empty for none.
     pub pair: String,
-    /// Of a car with a CVT that is a pair: its twin by the rules of TW-1 to TW-4.
-    pub twin: Option<ParamSet>,
     /// Words of the columns by which errors are grouped.
     pub words: BTreeMap<String, String>,
-}
-
-impl FleetCar {
-    /// Engine speed over road speed in the highest ratio, rad/m.
-    #[must_use]
-    pub fn top_rad_m(&self) -> f64 {
-        let vehicle = self.params.vehicle();
-        let overall = match vehicle.transmission() {
-            Transmission::Cvt(cvt) => cvt.ratio.high * cvt.final_drive.ratio,
-            Transmission::Manual(manual) => manual.overall.last().copied().unwrap_or(f64::NAN),
-        };
-        overall / vehicle.road_load.base.wheel_radius_m
-    }
 }
 
 /// Use of the columns of a table.
@@ -68,26 +94,33 @@ struct Columns<'a> {
     set: &'a [Setting],
 }
 
-pub(crate) fn fleet(
-    sheet: &Sheet,
-    map: &ColumnMap,
-    tests: &[Procedure],
-    set: &[Setting],
-) -> Result<Fleet, Problems> {
-    let Some(id) = sheet.column(&map.id) else {
+/// Index of the column with the names of the cars.
+fn id_column(sheet: &Sheet, map: &ColumnMap) -> Result<usize, Problems> {
+    sheet.column(&map.id).ok_or_else(|| {
         let problem = Problem::missing(format!(
             "the table has no column `{}` with the names of the cars",
             map.id
         ))
         .in_file(&sheet.file);
         let hint = did_you_mean(&map.id, sheet.names.iter().map(String::as_str));
-        return Err(problem
+        problem
             .allowed(sheet.names.join(", "))
             .hint(hint.unwrap_or_else(|| {
                 "a row is a car; a map names the columns of other tables".to_owned()
             }))
-            .into());
-    };
+            .into()
+    })
+}
+
+/// Makes the cars of a table; `each` takes every one as soon as it is made, in parallel.
+pub(crate) fn fleet<T: Send>(
+    sheet: &Sheet,
+    map: &ColumnMap,
+    tests: &[Procedure],
+    set: &[Setting],
+    each: impl Fn(&mut FleetCar) -> T + Sync,
+) -> Result<(Fleet, Vec<T>), Problems> {
+    let id = id_column(sheet, map)?;
     let known_keys: HashSet<&str> = catalogue::known_names()
         .iter()
         .map(String::as_str)
@@ -137,7 +170,7 @@ pub(crate) fn fleet(
         .map(|row| seen.insert(row.cells[id].as_str()))
         .collect();
     let rows: Vec<(usize, (&Row, bool))> = sheet.rows.iter().zip(is_new).enumerate().collect();
-    let made: Vec<Result<FleetCar, Refused>> = rows
+    let made: Vec<Result<(FleetCar, T), Refused>> = rows
         .into_par_iter()
         .map(|(index, (row, is_new))| {
             let refuse = |reason: String| Refused {
@@ -148,10 +181,15 @@ pub(crate) fn fleet(
             match row.cells[id].as_str() {
                 "" => Err(refuse(format!("{}: the car has no name", map.id))),
                 _ if !is_new => Err(refuse(format!("{}: an earlier row has this name", map.id))),
-                _ => columns.car(index, row).map_err(refuse),
+                _ => {
+                    let mut car = columns.car(index, row).map_err(refuse)?;
+                    let taken = each(&mut car);
+                    Ok((car, taken))
+                }
             }
         })
         .collect();
+    let mut all = Vec::new();
     let mut fleet = Fleet {
         cars: Vec::new(),
         refused: sheet.refused.clone(),
@@ -164,12 +202,15 @@ pub(crate) fn fleet(
     };
     for car in made {
         match car {
-            Ok(car) => fleet.cars.push(car),
+            Ok((car, taken)) => {
+                fleet.cars.push(car);
+                all.push(taken);
+            }
             Err(refused) => fleet.refused.push(refused),
         }
     }
     fleet.refused.sort_by_key(|refused| refused.line);
-    Ok(fleet)
+    Ok((fleet, all))
 }
 
 /// Columns that nothing reads, each with the near names.
@@ -177,7 +218,10 @@ fn unknown_columns(names: &[String], is_known: &dyn Fn(&str) -> bool) -> Vec<(St
     let options = new_car::NUMBERS.iter().map(|(name, _)| *name).chain(WORDS);
     let keys = catalogue::known_names().iter().map(String::as_str);
     let known: Vec<&str> = keys.chain(options).collect();
-    let near = |name: &String| did_you_mean(name, known.iter().copied()).unwrap_or_default();
+    let near = |name: &String| {
+        let others = known.iter().copied().filter(|known| known != name);
+        did_you_mean(name, others).unwrap_or_default()
+    };
     let unknown = names.iter().filter(|name| !is_known(name));
     unknown.map(|name| (name.clone(), near(name))).collect()
 }
@@ -249,15 +293,18 @@ impl Columns<'_> {
             doubts: params.setup().doubts(),
             line: row.line,
             pair: pair.to_owned(),
-            twin,
             words: self
                 .groups
                 .iter()
                 .map(|(name, k)| (name.clone(), row.cells[*k].clone()))
                 .collect(),
             id,
-            params,
-            by_test,
+            facts: CarFacts::of(&params),
+            sets: Some(CarSets {
+                params,
+                by_test,
+                twin,
+            }),
             measured,
         })
     }
@@ -268,7 +315,7 @@ impl Columns<'_> {
 
     /// The options of `new` that a row gives.
     fn answers(&self, row: &Row, options: &[(&str, &str)]) -> Result<Answers, String> {
-        let mut text = String::new();
+        let (mut text, mut empty) = (String::new(), Vec::new());
         for (option, template) in options {
             if let Some(value) = self.map.fill(template, &|name| self.cell(row, name))? {
                 debug_assert!(is_option(option), "checked with the map");
@@ -277,7 +324,24 @@ impl Columns<'_> {
                     option.replace('-', "_"),
                     toml::Value::String(value)
                 );
+            } else {
+                empty.push(*option);
             }
+        }
+        let has = |option: &str| {
+            let is_option = |(own, _): &(&str, &str)| *own == option;
+            options.iter().any(is_option) && !empty.contains(&option)
+        };
+        let is_needed = |option: &&&str| match **option {
+            _ if has("like") => false,
+            "mass" => true,
+            "displacement" | "power" => !has("engine-like"),
+            _ => false,
+        };
+        if let Some(option) = empty.iter().find(is_needed) {
+            return Err(format!(
+                "{option}: the cell is empty, and the value of a class is that of another car; fill it, or remove the row"
+            ));
         }
         let mut answers = Answers {
             title: row.cells[self.id].clone(),

@@ -6,14 +6,17 @@ use cvtcycle_config::Problems;
 use cvtcycle_config::procedure::Procedure;
 use cvtcycle_config::setup::{ParamSet, Setup};
 use cvtcycle_model::drive::{Conditions, Start, drive as drive_car};
-use cvtcycle_output::progress::Progress;
 use cvtcycle_output::summary::{Driven, RunSummary, Settings, run_summary};
-use rayon::prelude::*;
 
-use crate::FleetCar;
+use crate::CarSets;
+
+/// Measured over computed fuel from which its unit is doubted: the worst of 88 cars is off by a quarter.
+const FAR: f64 = 2.0;
+/// L/100 km times miles per US gallon: 3.785411784 l and 1.609344 km.
+const L_PER_100KM_MPG: f64 = 235.214_583;
 
 /// Figures of a car on all tests.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DrivenCar {
     /// Each test, in order.
     pub tests: Vec<TestFigures>,
@@ -46,6 +49,23 @@ impl DrivenCar {
             .copied()
     }
 
+    /// Doubts about the units of measured fuel, L/100 km by column.
+    pub(crate) fn doubts(&self, measured: &BTreeMap<String, f64>) -> Vec<String> {
+        let doubt = |(column, own): (&String, &f64)| {
+            let computed = self.fuel(column).filter(|fuel| fuel.is_finite())?;
+            let near = |x: f64| (1.0 / FAR..FAR).contains(&(x / computed));
+            let hint = match near(L_PER_100KM_MPG / own) {
+                true => format!(": as miles per gallon it is {:.2}", L_PER_100KM_MPG / own),
+                false => String::new(),
+            };
+            let said = format!(
+                "{column}: {own} L/100 km were measured and {computed:.2} computed{hint}; check its unit"
+            );
+            (!near(*own)).then_some(said)
+        };
+        measured.iter().filter_map(doubt).collect()
+    }
+
     /// Computed fuel of the twin of a column, L/100 km.
     #[must_use]
     pub fn twin_fuel(&self, column: &str) -> Option<f64> {
@@ -71,32 +91,23 @@ impl DrivenCar {
     }
 }
 
-/// Drives every car on every test, with steps of at most some time, s. `progress` counts the cars.
-pub fn drive(
-    cars: &[FleetCar],
-    tests_of: &[Procedure],
-    max_dt_s: f64,
-    progress: &impl Progress,
-) -> Vec<DrivenCar> {
-    cars.par_iter()
-        .map(|car| {
-            let tests = tests_of
-                .iter()
-                .map(|test| drive_test(car, test, max_dt_s))
-                .collect();
-            let twin = car.twin.as_ref().map_or_else(Vec::new, |twin| {
-                // A test whose road load the row has for this car alone is none of the twin's.
-                let own = |test: &&Procedure| !car.by_test.contains_key(&test.name);
-                let drive = |test| drive_params(twin, test, max_dt_s);
-                tests_of.iter().filter(own).map(drive).collect()
-            });
-            progress.advance(1);
-            DrivenCar { tests, twin }
-        })
-        .collect()
+/// Drives a car on every test, with steps of at most some time, s.
+pub(crate) fn drive(car: &CarSets, tests_of: &[Procedure], max_dt_s: f64) -> DrivenCar {
+    let tests = tests_of.iter();
+    let tests = tests.map(|test| drive_test(car, test, max_dt_s));
+    let twin = car.twin.as_ref().map_or_else(Vec::new, |twin| {
+        // A test whose road load the row has for this car alone is none of the twin's.
+        let own = |test: &&Procedure| !car.by_test.contains_key(&test.name);
+        let drive = |test| drive_params(twin, test, max_dt_s);
+        tests_of.iter().filter(own).map(drive).collect()
+    });
+    DrivenCar {
+        tests: tests.collect(),
+        twin,
+    }
 }
 
-pub(crate) fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
+pub(crate) fn drive_test(car: &CarSets, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let loaded = match car.by_test.get(&test.name) {
         // The road load is that of the test already.
         Some(own) => Procedure {
@@ -195,5 +206,35 @@ pub(crate) fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFig
         failed_checks,
         refused: None,
         wheel_mj_km: first.wheel_work_positive_kj / 1e3 / first.distance_km,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Truth: 47 miles per US gallon are 5.00 L/100 km.
+    #[test]
+    fn fuel_in_miles_per_gallon_is_doubted() {
+        let driven = DrivenCar {
+            tests: vec![TestFigures {
+                test: "hwfet".to_owned(),
+                fuel: BTreeMap::from([("hwfet_l_per_100km".to_owned(), 4.6)]),
+                failed_checks: Vec::new(),
+                refused: None,
+                wheel_mj_km: 0.4,
+            }],
+            twin: Vec::new(),
+        };
+        let of = |litres: f64| {
+            driven.doubts(&BTreeMap::from([("hwfet_l_per_100km".to_owned(), litres)]))
+        };
+        assert!(of(5.9).is_empty() && of(3.4).is_empty());
+        let found = of(47.0);
+        assert!(
+            found[0].contains("as miles per gallon it is 5.00"),
+            "{found:?}"
+        );
+        assert!(!of(1.2)[0].contains("gallon"));
     }
 }

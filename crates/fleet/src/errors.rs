@@ -124,11 +124,7 @@ pub fn error_percent((car, driven): Entry, figure: &str) -> Option<f64> {
 /// Word for the kind of a car's box.
 #[must_use]
 pub fn box_word(car: &FleetCar) -> &'static str {
-    if car.params.vehicle().transmission().is_cvt() {
-        "cvt"
-    } else {
-        "manual"
-    }
+    if car.facts.is_cvt { "cvt" } else { "manual" }
 }
 
 /// Errors with the names of their cars, by place of the column, its name and a word in it.

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::driven::drive_test;
 use crate::errors::ErrorStatistics;
-use crate::{Fleet, FleetCar};
+use crate::{CarSets, Fleet, FleetCar};
 
 /// Settings of the search: one start, as a key's range is far wider than what is likely.
 const SEARCH: Options = Options {
@@ -194,7 +194,7 @@ impl<'a> Model<'a> {
             ));
         }
         let place = |car: &FleetCar, key: &FitKey| {
-            let param = car.params.param(&key.key).ok();
+            let param = car.sets.as_ref()?.params.param(&key.key).ok();
             param.filter(Param::is_active)
         };
         let places = cars
@@ -258,19 +258,19 @@ impl<'a> Model<'a> {
     }
 
     /// A car with the values in place of its own.
-    fn changed(&self, car: usize, values: &[f64]) -> Result<FleetCar, String> {
+    fn changed(&self, car: usize, own: &CarSets, values: &[f64]) -> Result<CarSets, String> {
         let numbers: Vec<(&Param, f64)> = self.places[car]
             .iter()
             .zip(values)
             .filter_map(|(place, value)| Some((place.as_ref()?, *value)))
             .collect();
-        let own = self.cars[car];
+        let id = &self.cars[car].id;
         let said = |problems: Problems| {
             let first = problems.iter().next();
             let message = first.map_or("", |problem| problem.message.as_str());
-            format!("{}: {message}", own.id)
+            format!("{id}: {message}")
         };
-        let mut changed = FleetCar {
+        let mut changed = CarSets {
             params: own.params.with_numbers(&numbers).map_err(said)?,
             ..own.clone()
         };
@@ -288,9 +288,12 @@ impl<'a> Model<'a> {
 
     /// Residuals of a car (FF-1).
     fn of_car(&self, car: usize, values: Option<&[f64]>) -> Result<Vec<f64>, String> {
+        let Some(own) = &self.cars[car].sets else {
+            return Err(format!("{}: was driven already", self.cars[car].id));
+        };
         let changed = match values {
-            Some(values) => self.changed(car, values)?,
-            None => self.cars[car].clone(),
+            Some(values) => self.changed(car, own, values)?,
+            None => own.clone(),
         };
         let wanted = self.observations.iter().filter(|o| o.car == car);
         let mut fuel: HashMap<String, f64> = HashMap::new();

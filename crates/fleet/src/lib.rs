@@ -26,14 +26,15 @@ pub mod spread;
 pub mod tables;
 pub mod weights;
 
-pub use car::FleetCar;
-pub use driven::{DrivenCar, TestFigures, drive};
+pub use car::{CarFacts, CarSets, FleetCar};
+pub use driven::{DrivenCar, TestFigures};
 pub use map::ColumnMap;
 pub use setting::Setting;
 pub use sheet::{Refused, Sheet};
 
 use cvtcycle_config::Problems;
 use cvtcycle_config::procedure::Procedure;
+use cvtcycle_output::progress::Progress;
 
 /// Cars of a table, and the rows that are none.
 #[derive(Clone, Debug)]
@@ -71,6 +72,29 @@ impl Fleet {
         tests: &[Procedure],
         set: &[Setting],
     ) -> Result<Fleet, Problems> {
-        car::fleet(sheet, map, tests, set)
+        car::fleet(sheet, map, tests, set, |_| ()).map(|(fleet, _)| fleet)
+    }
+
+    /// Makes the cars of a table and drives each on every test, with steps of at most some time, s. `progress` counts the cars.
+    /// The values of a car go as soon as it is driven, so that memory holds for tables of any length.
+    ///
+    /// # Errors
+    /// As of [`Fleet::from_sheet`].
+    pub fn driven(
+        sheet: &Sheet,
+        map: &ColumnMap,
+        tests: &[Procedure],
+        set: &[Setting],
+        max_dt_s: f64,
+        progress: &impl Progress,
+    ) -> Result<(Fleet, Vec<DrivenCar>), Problems> {
+        car::fleet(sheet, map, tests, set, |car| {
+            let sets = car.sets.take();
+            let driven = sets.map(|sets| driven::drive(&sets, tests, max_dt_s));
+            let driven = driven.unwrap_or_default();
+            car.doubts.extend(driven.doubts(&car.measured));
+            progress.advance(1);
+            driven
+        })
     }
 }

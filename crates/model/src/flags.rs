@@ -47,7 +47,7 @@ pub(crate) use flags;
 flags! {
     /// States and departures from validity of a row, as a bit set.
     Flags {
-        MISSED_TRACE = 0, "missed_trace", "the car cannot follow the trace: engine at full load, torque missing; exit code 1";
+        MISSED_TRACE = 0, "missed_trace", "the car is slower than its trace by more than the tolerance of the test, after rows of full_load; exit code 1";
         GROSS_SLIP = 1, "gross_slip", "belt torque above what the clamping force carries; slip is held at its bound";
         LOW_CLAMP = 2, "low_clamp", "clamp safety factor (torque capacity over torque) below 1";
         FLOW_LIMITED = 3, "flow_limited", "the pump's flow does not cover leakage, lubrication and shift flow";
@@ -65,6 +65,7 @@ flags! {
         WRONG_GEAR = 15, "wrong_gear", "the cycle prescribes no gear or an open clutch while the car is driven faster; a gear was engaged; exit code 1";
         PRIMARY_PRESSURE_SHORT = 16, "primary_pressure_short", "the primary needs a higher pressure than the line pressure for its clamping force; its piston is too small for this ratio";
         LOCKUP_OPEN = 17, "lockup_open", "the car moves over the open lock-up clutch of its torque converter";
+        FULL_LOAD = 18, "full_load", "the engine is at full load, and torque for the trace is missing";
     }
 }
 

@@ -24,6 +24,9 @@ pub trait PrimeMover<R: Real = f64> {
     fn drag_nm(&self, speed_rad_s: R) -> R;
     /// Largest acceleration of the free shaft, rad/s2.
     fn max_accel_rad_s2(&self) -> R;
+
+    /// Rotating energy at a speed, J.
+    fn rotating_j(&self, speed_rad_s: R) -> R;
     /// Speed to which the shaft falls from another in `dt_s` with a load on it and no fuel.
     fn slowed_rad_s(&self, from_rad_s: R, load_nm: R, dt_s: f64) -> R;
 }

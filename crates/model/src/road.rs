@@ -19,7 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Step, mean_powers};
-use crate::math::{Gather, Mask, Operand, Real, exp, ln, physics};
+use crate::math::{Gather, Mask, Operand, Real, exp, larger, ln, physics};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -86,10 +86,38 @@ pub struct WheelDemand<R: Real = f64> {
     pub wheel_rad_s: R,
     /// Mean power, W.
     pub power_w: R,
+    /// Rise of the power from the beginning of the step to its end, W; 0 where it is not known.
+    pub rise_w: R,
     /// Work in the drive parts, J.
     pub positive_j: R,
     /// Work in the braking parts, J, negative.
     pub negative_j: R,
+}
+
+/// Speeds at both ends of a step with a mean speed, m/s, and an acceleration, m/s2; never below 0.
+fn end_speeds_m_s(mean_m_s: f64, accel_m_s2: f64, dt_s: f64) -> [f64; 2] {
+    let half_m_s = 0.5 * accel_m_s2 * dt_s;
+    [mean_m_s - half_m_s, mean_m_s + half_m_s].map(|v| larger(v, 0.0))
+}
+
+/// Two speeds over their mean; 1 at rest.
+fn over_mean(speeds_m_s: [f64; 2], mean_m_s: f64) -> [f64; 2] {
+    match mean_m_s > 0.0 {
+        true => speeds_m_s.map(|speed| speed / mean_m_s),
+        false => [1.0; 2],
+    }
+}
+
+impl<R: Real> WheelDemand<R> {
+    /// Speeds at the beginning and at the end of a step of `dt_s`, m/s.
+    pub fn end_speeds_m_s(&self, dt_s: f64) -> [f64; 2] {
+        end_speeds_m_s(self.speed_m_s, self.accel_m_s2, dt_s)
+    }
+
+    /// The same over the mean speed; 1 at rest.
+    pub fn ends_over_mean(&self, dt_s: f64) -> [f64; 2] {
+        over_mean(self.end_speeds_m_s(dt_s), self.speed_m_s)
+    }
 }
 
 impl RoadLoad {
@@ -136,6 +164,7 @@ impl<R: Real> RoadLoad<R> {
                 accel_m_s2: 0.0,
                 wheel_rad_s: zero,
                 power_w: zero,
+                rise_w: zero,
                 positive_j: zero,
                 negative_j: zero,
             };
@@ -152,9 +181,16 @@ impl<R: Real> RoadLoad<R> {
             accel_m_s2: motion.accel_m_s2,
             wheel_rad_s: motion.speed_m_s / self.wheel_radius_m,
             power_w,
+            rise_w: self.rise_w(c, step),
             positive_j,
             negative_j,
         }
+    }
+
+    /// Rise of the power F v over a step with a constant part of force `c`, W.
+    fn rise_w(&self, c: R, step: &Step) -> R {
+        let at = |v: f64| c.splat(v) * (c + (self.f1_n_per_m_s + self.f2_n_per_m_s2 * v) * v);
+        at(step.end_speed_m_s) - at(step.start_speed_m_s)
     }
 
     /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).

@@ -329,6 +329,7 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
 /// Speed at which the control settles for a steady share of rated power at the wheels, rad/s.
 fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
     cvt.ratio.target_rad_s(&RatioDemand {
+        begins: None,
         secondary_rad_s: 0.0,
         primary_rad_s: 0.0,
         speed_m_s: 0.0,
@@ -343,6 +344,7 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        locks_at: 0.0,
         last_direction: 0,
         free_up_to_rad_s: 0.0,
         dt_s: 1.0,

@@ -349,6 +349,16 @@ pub fn summarise(
 }
 
 impl Summary {
+    /// Takes the ranges of one sample, of the first comparisons in their order, and with them that of the subject's fuel.
+    pub fn take_drawn(&mut self, drawn: Vec<DrawnDifference>) {
+        if let (Some(run), Some(first)) = (self.runs.first_mut(), drawn.first()) {
+            run.drawn = first.fuel_l_per_100km;
+        }
+        for (comparison, drawn) in self.comparison.iter_mut().zip(drawn) {
+            comparison.interval = Some(drawn);
+        }
+    }
+
     /// Copy with the cars under their names in tables and figures.
     #[must_use]
     pub fn labelled(&self) -> Self {

@@ -4,7 +4,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::procedure::Procedure;
 use cvtcycle::fleet::errors::Entry;
 use cvtcycle::fleet::tables::{Cell, fleet_table};
-use cvtcycle::fleet::{ColumnMap, Fleet, Setting, Sheet, drive, spread};
+use cvtcycle::fleet::{ColumnMap, DrivenCar, Fleet, Setting, Sheet, spread};
 use cvtcycle::output::table::{Head, Kind};
 use pyo3::prelude::*;
 
@@ -44,10 +44,8 @@ pub fn fleet(
             .collect::<Result<_, _>>()?;
         let sheet = Sheet::read(&name, &text)?;
         let set = Setting::read_all(&set, &sheet.names)?;
-        let driven_with = |set: &[Setting]| -> Result<_, Problems> {
-            let fleet = Fleet::from_sheet(&sheet, &map, &tests, set)?;
-            let driven = drive(&fleet.cars, &tests, dt_s, stop);
-            Ok((fleet, driven))
+        let driven_with = |set: &[Setting]| -> Result<(Fleet, Vec<DrivenCar>), Problems> {
+            Fleet::driven(&sheet, &map, &tests, set, dt_s, stop)
         };
         let (fleet, driven) = driven_with(&set)?;
         let cars: Vec<Entry> = fleet.cars.iter().zip(&driven).collect();

@@ -262,6 +262,7 @@ impl RunData {
             fuel_map: Some(fuel_map(&self.cars[k].setup)),
             group_fuel: charts::group_fuel(&summary.runs[k]),
             fuel_unit: summary.runs[k].over().unit(),
+            fuel_energy_kj: summary.runs[k].fuel_energy_kj,
             published: charts::published_drive(&self.cars[k].name, &summary),
         };
         let picture = match kind {

@@ -56,6 +56,19 @@ def test_all_readers_see_the_same(table: cc.Table) -> None:
     assert set(own["phase"]) <= {"ECE15_1", "ECE15_2", "ECE15_3", "ECE15_4", "ece15", ""}
 
 
+def test_frames_with_missing_values_and_text_in_the_index_are_logs() -> None:
+    """Truth: the drive of which the frames are made."""
+    speeds = [0.0, 0.0, *[4.0 * k for k in range(15)], *[56.0 - 4.0 * k for k in range(15)], 0.0]
+    stamps = pandas.Timestamp("2026-01-05 08:00") + pandas.to_timedelta(range(len(speeds)), unit="s")
+    plain = pandas.DataFrame({"speed_kmh": speeds}, index=stamps)
+    text = plain.set_index(pandas.Index([f"{stamp.isoformat()}" for stamp in stamps], name="timestamp", dtype=object))
+    oil = pandas.array([pandas.NA] * len(speeds), dtype="Float64")
+    nullable = plain.reset_index(names="time").convert_dtypes().assign(oil=oil)
+    drives = [cc.Cycle.from_frame(frame) for frame in (plain, text, nullable)]
+    assert [drive.duration_s for drive in drives] == [len(speeds) - 1.0] * 3
+    assert len({drive.distance_m for drive in drives}) == 1
+
+
 def test_views_outlive_the_table() -> None:
     def views() -> list[numpy.ndarray]:
         table = cc.run("rover_216_cvt", "ece15").trace

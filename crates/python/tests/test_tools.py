@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import subprocess
 import sys
+import tempfile
 
 import cvtcycle as cc
 import numpy
+import pandas
 import polars
 import pytest
 
@@ -134,3 +137,55 @@ def test_bad_studies(tmp_path) -> None:
         cc.Study.from_toml(PLAN, seed=4).write_parts((0, 1), tmp_path / "a")
     with pytest.raises(cc.InputError, match="draws no samples"):
         cc.Study.from_toml(PLAN.replace("{ latin_hypercube = { samples = 40, seed = 3 } }", '"grid"').replace("distribution = { uniform = { low = 1000, high = 1400 } }", "values = [1000, 1400]"), samples=5)
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "cycle", "ambient", "baseline", "oil", "values"),
+    [
+        ("rover_216_cvt", "ece15", -10.0, "rover_216_5mt", None, {}),
+        ("rover_216_cvt", "ece15", 25.0, "rover_216_5mt", None, {"transmission.cvt.belt.band_offset_mm": 2}),
+        ("rover_216_cvt", "eudc", -7.0, "rover_216_5mt", "dexron_iii", {}),
+        ("civic_20_cvt", "ece15", 24.0, "twin", None, {}),
+        ("justy_ecvt", "eudc", 20.0, "twin", None, {}),
+    ],
+)
+def test_an_answer_is_that_of_the_program(
+    vehicle: str, cycle: str, ambient: float, baseline: str, oil: str | None, values: dict[str, float]
+) -> None:
+    """Truth: `run --json`, which tests/cli/commands/one_answer.rs holds against terminal, report and live page."""
+    car = cc.Car(vehicle, set=values, lubricant=oil)
+    ours = car.answer(cycle, ambient_degc=ambient, baselines=[baseline], draws=24, levers=False)
+    words = ["run", "--vehicle", vehicle, "--cycle", cycle, "--ambient", str(ambient), "--baseline", baseline, "--draws", "24"]
+    words += ["--price", "never", "--json"]
+    words += [part for key, value in values.items() for part in ("--set", f"{key}={value}")]
+    words += ["--lubricant", oil] if oil else []
+    theirs = json.loads(printed(*words))["answer"]
+    for key in ("schema", "plan", "draws", "failed_draws", "reasons", "fuel_l_per_100km", "differences"):
+        assert ours[key] == theirs[key], key
+
+
+def test_fleet_takes_frames_with_missing_cells() -> None:
+    """Truth: the same cars as text. pandas has NaN for a missing text or number, and then floats for whole numbers."""
+    cars = {
+        "carid": ["one", "two"],
+        "mass": ["1300kg", "1400kg"],
+        "displacement": ["1.8l", "2.0l"],
+        "power": ["104kW", "110kW"],
+        "engine": ["pfi", None],
+        "engine_year": [2018, None],
+        "hwfet_l_per_100km": [4.9, None],
+    }
+    text = "carid,mass,displacement,power,engine,engine_year,hwfet_l_per_100km\none,1300kg,1.8l,104kW,pfi,2018,4.9\ntwo,1400kg,2.0l,110kW,,,\n"
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "cars.csv")
+        with open(file, "w", encoding="utf-16") as out:
+            out.write(text)
+        wanted = cc.fleet(file, tests="hwfet")
+    assert wanted["refused"] == ["", ""]
+    for frame in (cars, pandas.DataFrame(cars), polars.DataFrame(cars)):
+        got = cc.fleet(frame, tests="hwfet")
+        for name in wanted.columns:
+            if isinstance(wanted[name], list):
+                assert got[name] == wanted[name], (type(frame), name)
+            else:
+                numpy.testing.assert_array_equal(got[name], wanted[name], err_msg=name)

@@ -1,8 +1,8 @@
 //! Answer of a run from one sample of what is uncertain of its cars: ranges, price of each loss, options, next test.
 
-use cvtcycle_analysis::answer::{Answer, DRAWS, HEARD_RPM, Question, prepare, shipped_levers};
+use cvtcycle_analysis::answer::{DRAWS, HEARD_RPM, Question, prepare, shipped_levers};
 use cvtcycle_config::{Problem, Problems};
-use cvtcycle_output::summary::{Over, Summary};
+use cvtcycle_output::summary::Over;
 use cvtcycle_study::Study;
 
 use crate::results::RunResults;
@@ -39,25 +39,4 @@ pub(crate) fn study_of_run(found: &RunResults) -> Result<Study, String> {
 fn first_message(problems: &Problems) -> String {
     let first = problems.iter().next();
     first.map_or_else(String::new, |problem: &Problem| problem.message.clone())
-}
-
-/// Puts the ranges of an answer in place of those of other samples: a document has one.
-pub(crate) fn merge(summary: &mut Summary, answer: &Answer) {
-    if summary.comparison.len() == answer.differences.len() {
-        let drawn = answer.differences.iter().map(|(_, drawn)| drawn.clone());
-        for (comparison, drawn) in summary.comparison.iter_mut().zip(drawn) {
-            comparison.interval = Some(drawn);
-        }
-    }
-    let Some(run) = summary.runs.first_mut() else {
-        return;
-    };
-    run.drawn = answer.fuel();
-    if let Some(price) = &mut run.price {
-        for (name, [low, _, high]) in &answer.prices {
-            if let Some(loss) = price.losses.get_mut(name) {
-                loss.range = answer.is_known().then_some([*low, *high]);
-            }
-        }
-    }
 }

@@ -146,7 +146,7 @@ fn compute(run: &mut RunResults, drives: Drives) -> Result<(), Problems> {
         Err(why) => run.no_answer = Some(why),
     }
     if let Some(answer) = &run.answer {
-        computed::merge(&mut run.summary, answer);
+        answer.merge(&mut run.summary);
     }
     Ok(())
 }

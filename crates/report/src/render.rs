@@ -5,6 +5,7 @@ use std::fmt;
 use askama::Template;
 use askama::filters::Escaper;
 
+use super::charts::Picture;
 use super::document::{Block, Document, ReportTable, Section};
 use super::live_section::ControlKind;
 use super::number::typeset;
@@ -196,6 +197,12 @@ fn is_tall(svg: &str) -> bool {
     height
         .and_then(|text| text.parse().ok())
         .is_some_and(|height: f64| height > TWO_A_PAGE)
+}
+
+/// The drawing of a figure for a narrow screen.
+fn narrow_drawing(picture: &Picture, number: &str) -> Option<String> {
+    let svg = picture.narrow.svg()?;
+    Some(with_own_ids(&svg, &format!("{number}n")))
 }
 
 /// Makes the ids of a drawing unique within the page.

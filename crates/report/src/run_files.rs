@@ -69,6 +69,7 @@ pub fn write(
         fuel_map: Some(fuel_map.clone()),
         group_fuel: charts::group_fuel(run),
         fuel_unit: run.over().unit(),
+        fuel_energy_kj: run.fuel_energy_kj,
         published: charts::published_drive(car.name, summary),
     });
     let plots: Vec<PlotRun> = plots.collect();

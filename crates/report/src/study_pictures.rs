@@ -10,8 +10,10 @@ use crate::charts::study::{
 use crate::document::plain;
 use crate::results::StudyResults;
 use cvtcycle_analysis::levers::LeverAnswer;
+use cvtcycle_analysis::words::study::fleet_range;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::escape::json_text;
+use cvtcycle_output::fleet_spread::DrivenOn;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{Column, OutputAnswer, described, tables};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
@@ -31,7 +33,7 @@ pub fn study_pictures(
     known: &[(String, KnownValue)],
 ) -> Result<Vec<(String, Picture)>, Problem> {
     match &answer.matrix {
-        Some(matrix) => Ok(matrix_pictures(matrix, warm_ups, &frame.outline.title)),
+        Some(matrix) => Ok(matrix_pictures(matrix, warm_ups, frame.outline)),
         None => output_pictures(answer, frame, known),
     }
 }
@@ -60,10 +62,20 @@ pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Pic
     })
 }
 
-fn matrix_pictures(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
-    let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
-    let penalty = ambient_penalty(matrix, title);
-    list.extend(penalty.map(|picture| ("ambient_penalty".to_owned(), picture)));
+fn matrix_pictures(
+    matrix: &Matrix,
+    warm_ups: &[WarmUp],
+    outline: &StudyManifest,
+) -> Vec<(String, Picture)> {
+    let title = &outline.title;
+    let range = |baseline: usize, degc: f64, percent: f64| {
+        let on = DrivenOn::whole(&outline.plan.base.cycle, degc);
+        Some(fleet_range(outline, baseline, percent, on)?.ends)
+    };
+    let penalty = ambient_penalty(matrix, title, &range);
+    let penalty = penalty.map(|picture| ("ambient_penalty".to_owned(), picture));
+    let mut list: Vec<(String, Picture)> = penalty.into_iter().collect();
+    list.push(("ambient_fuel".to_owned(), ambient_fuel(matrix, title)));
     if warm_ups.is_empty() {
         return list;
     }

@@ -4,7 +4,7 @@ use cvtcycle::config::Problem;
 use cvtcycle::output::attribution::{PricedCar, write_pairs, write_prices, write_shares};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::plain;
-use cvtcycle::report::charts::price_bars;
+use cvtcycle::report::charts::price_dots;
 
 use super::AttributionSummary;
 
@@ -33,7 +33,7 @@ pub fn write(dir: &mut OutputDir, summary: &AttributionSummary) -> Result<(), Pr
             1 => format!("price_{name}.svg"),
             _ => format!("price_{name}_{ambient}.svg"),
         };
-        dir.put(&file, price_bars(car.run, &subject).svg)?;
+        dir.put(&file, price_dots(car.run, &subject).svg)?;
     }
     Ok(())
 }

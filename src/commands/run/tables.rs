@@ -338,5 +338,19 @@ pub fn failures(summary: &Summary) -> Vec<String> {
         };
         run.failures.iter().map(line).collect::<Vec<_>>()
     };
-    summary.runs.iter().flat_map(failed_checks).collect()
+    let checks = summary.runs.iter().flat_map(failed_checks);
+    checks.chain(failing_draws(summary)).collect()
+}
+
+/// Comparisons of which most draws fail: the numbers are not those of a car.
+fn failing_draws(summary: &Summary) -> impl Iterator<Item = String> {
+    let most = |of: &&Comparison| {
+        let drawn = of.interval.as_ref();
+        drawn.is_some_and(|drawn| drawn.failed_share() > 0.5)
+    };
+    let failing = summary.comparison.iter().filter(most);
+    failing.filter_map(|of| {
+        let words = of.interval.as_ref()?.failures_in_words()?;
+        Some(format!("check failed: against {}, {words}", of.baseline))
+    })
 }

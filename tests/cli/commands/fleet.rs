@@ -14,6 +14,7 @@ double,3000,100,1.8l,104kW,,,x
 double,3000,100,1.8l,104kW,,,x
 ,3000,100,1.8l,104kW,,,x
 no_power,3000,100,1.8l,,,,x
+no_mass,,100,1.8l,104kW,,,x
 comma,\"3,000\",100,1.8l,104kW,,,x
 no_unit,3000,100,1.8l,104,,,x
 light,-5,100,1.8l,104kW,,,x
@@ -51,7 +52,7 @@ fn bad_rows_are_refused_by_name_and_the_rest_is_driven() {
         .unwrap()
         .into_records();
     let rows: Vec<csv::StringRecord> = rows.map(Result::unwrap).collect();
-    assert_eq!(rows.len(), 13, "every row is in the file");
+    assert_eq!(rows.len(), 14, "every row is in the file");
     let reason = |id: &str| {
         let of = rows.iter().filter(|row| &row[0] == id);
         of.map(|row| row[row.len() - 1].to_owned())
@@ -65,6 +66,7 @@ fn bad_rows_are_refused_by_name_and_the_rest_is_driven() {
     assert_eq!(reason("double"), "|carid: an earlier row has this name");
     for (id, words) in [
         ("no_power", "power"),
+        ("no_mass", "mass: the cell is empty"),
         ("comma", "decimal point"),
         ("no_unit", "unit"),
         ("light", "mass"),

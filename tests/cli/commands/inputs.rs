@@ -38,7 +38,7 @@ fn list_prints_cycles_and_plans() {
             .as_array()
             .unwrap()
             .len(),
-        7
+        10
     );
     for what in [
         "cycles",

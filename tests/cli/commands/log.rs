@@ -622,3 +622,31 @@ fn engine_speed_and_fuel_of_a_log_are_compared_with_the_computed_ones() {
         );
     }
 }
+
+/// A refusal that a repair mends ends with a call that works, also where it is chosen already.
+#[test]
+fn a_repair_is_proposed_as_a_call() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("turned.csv");
+    let clean = fs::read_to_string(path("clean.csv")).unwrap();
+    let mut rows: Vec<&str> = clean.lines().skip(1).collect();
+    rows.swap(30, 31);
+    fs::write(&file, format!("time_s,speed_kmh\n{}\n", rows.join("\n"))).unwrap();
+    let file = file.to_str().unwrap();
+    let gap = path("k08_gap_at_speed.csv");
+    let cases: [(&str, &[&str], &str); 4] = [
+        (file, &[], "sort"),
+        (&gap, &[], "cut"),
+        (&gap, &["--repair", "no-smooth"], "no-smooth,cut"),
+        (&gap, &["--repair=no-smooth"], "no-smooth,cut"),
+    ];
+    for (file, more, repair) in cases {
+        let output = run_of(file, &[&["--baseline", "none"], more].concat());
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        let line = text.lines().find(|line| line.starts_with("try: ")).unwrap();
+        assert!(line.ends_with(&format!(" --repair {repair}")), "{line}");
+        let own = summary_of(file, &["--baseline", "none", "--repair", repair]);
+        assert!(fuel(&own).is_finite());
+    }
+}

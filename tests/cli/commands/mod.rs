@@ -17,6 +17,7 @@ mod log_car;
 mod log_table;
 mod named;
 mod new;
+mod one_answer;
 mod run;
 mod standing;
 mod streams;

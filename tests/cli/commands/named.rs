@@ -59,7 +59,7 @@ fn a_value_of_the_car_makes_another_word() {
     let shipped = include_str!("../../../vehicles/rover_216_5mt.toml");
     let word_with = |own: &str| {
         let text = shipped.replace(
-            "neutral_share = { value = 0.5",
+            "neutral_share = { value = 0.2",
             &format!("neutral_share = {{ {own}"),
         );
         fs::write(dir.path().join("own.toml"), text).unwrap();

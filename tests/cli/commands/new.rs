@@ -193,7 +193,7 @@ fn the_engine_and_what_the_coefficients_are_of_are_asked() {
         "engine: technology ",
         "or measured ",
         "there is no engine named `turbos`; did you mean `turbo`?",
-        "this is no year of an engine; 1980 to 2035",
+        "this is no year of an engine; 1980 to 2030",
         "[neutral: targets in lbf are EPA's, of coast-downs in neutral]: ",
     ] {
         assert!(questions.contains(part), "{part}\n{questions}");

@@ -159,7 +159,7 @@ fn the_table_has_the_fuel_of_every_car() {
         "g/km",
         "10.937",
         "11.028",
-        "over mondeo_20_5mt: ece15 -11.7 %",
+        "over mondeo_20_5mt: ece15 -12.7 %",
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
@@ -494,7 +494,7 @@ fn an_impossible_drive_exits_with_code_1() {
             .concat(),
             "too_hot",
             "degC",
-            "rover_216_5mt heats the coolant to 156.7 degC at 3600.0 s in idle",
+            "rover_216_5mt heats the coolant to 155.4 degC at 3600.0 s in idle",
         ),
     ] {
         let words = [&["run", "--baseline", "none"], &words[..]].concat();
@@ -583,8 +583,8 @@ fn files_of_a_run_against_the_twin_of_a_shipped_car() {
     }
 }
 
-/// TR-1 by hand from the run's own numbers: the largest missing force over the inertia, times the seconds that miss, against 2 mph on a US cycle. Both
-/// outcomes occur.
+/// TR-3 from outside: a heavier car falls further behind its trace, and a run fails where seconds are beyond the tolerance, and there alone, whatever the
+/// step. Both outcomes occur.
 #[test]
 fn a_trace_is_missed_beyond_its_tolerance() {
     let mut outcomes = Vec::new();
@@ -612,26 +612,15 @@ fn a_trace_is_missed_beyond_its_tolerance() {
         let missed_s = own["trace_missed_s"].as_f64().unwrap();
         let checks = own["failed_checks"].as_array().unwrap();
         let failed = checks.iter().any(|check| check == "missed_trace");
-        if missed_s > 0.0 {
-            let torque_nm = own["worst_deficit"]["wheel_torque_nm"].as_f64().unwrap();
-            let setup = cvtcycle::config::setup::load(
-                "civic_20_cvt",
-                &cvtcycle::config::setup::Options::default(),
-            )
-            .unwrap();
-            let base = setup.road_load.base;
-            let inertia_kg = mass_kg * base.inertia_kg / base.mass_kg;
-            let slower_m_s = torque_nm / base.wheel_radius_m * missed_s / inertia_kg;
-            assert_eq!(
-                failed,
-                slower_m_s > 2.0 * 0.44704,
-                "{mass_kg} kg: {slower_m_s} m/s"
-            );
-            outcomes.push(failed);
-        } else {
-            assert!(!failed, "{mass_kg} kg");
-        }
+        assert_eq!(failed, missed_s > 0.0, "{mass_kg} kg");
+        assert_eq!(failed, own["worst_deficit"].is_object(), "{mass_kg} kg");
+        outcomes.push(failed);
     }
+    let first = outcomes.iter().position(|failed| *failed).unwrap_or(0);
+    assert!(
+        outcomes[first..].iter().all(|failed| *failed),
+        "{outcomes:?}"
+    );
     assert!(
         outcomes.contains(&true) && outcomes.contains(&false),
         "{outcomes:?}"

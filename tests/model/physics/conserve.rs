@@ -401,7 +401,7 @@ fn rotating_energy_adds_up() {
             "{name}: {sum} J"
         );
         // The energy follows the speed: at most a few steps behind.
-        let last = keep.rows[keep.rows.len() - 1].engine_speed_rad_s;
+        let last = keep.rows[keep.rows.len() - 1].engine_end_rad_s;
         let now = j * last * last;
         assert!(
             (end.kinetic_j / now - 1.0).abs() < 0.05,

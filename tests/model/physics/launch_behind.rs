@@ -86,7 +86,14 @@ fn at_rest_the_belt_turns_and_loses() {
                 [Component::ClutchDrag, Component::FinalDrive].map(|part| row.loss_w[part]);
             assert!((drag_w > 0.0) == turns && shaft_w.abs() <= 0.0);
             let creep_w = 5.0 * row.engine_speed_rad_s;
-            assert!((row.loss_w[Component::LaunchClutch] / creep_w - 1.0).abs() < 1e-9);
+            let clutch_w = row.loss_w[Component::LaunchClutch];
+            assert!(
+                (clutch_w / creep_w - 1.0).abs() < 1e-8, // the solve leaves 1e-7 of pressure and slip
+                "{} s: {clutch_w} W, {creep_w} W, {} W of {} rad/s",
+                row.time_s,
+                row.kinetic_w,
+                row.engine_speed_rad_s
+            );
             let lost_w: f64 = row.loss_w.iter().sum();
             let given_w = row.engine_torque_nm * row.engine_speed_rad_s;
             assert!((lost_w / given_w - 1.0).abs() < 1e-12, "{lost_w} {given_w}");

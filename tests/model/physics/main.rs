@@ -43,6 +43,7 @@ mod side_by_side;
 mod smaller_points;
 mod standstill;
 mod start_stop;
+mod steps;
 mod tables;
 mod targets;
 mod together;

@@ -176,8 +176,7 @@ const ZERO_LOSS: [(&str, &str, &[&str]); 13] = [
         "bearing",
         "rover_216_5mt",
         &[
-            "transmission.manual.gears.bearing_factor=0",
-            "transmission.manual.gears.preload_factor=0",
+            "transmission.manual.gears.bearings=[[0, 2, 50, 30, 0, 0], [1, 2, 50, 30, 0, 0], [2, 2, 62, 45, 0, 0]]",
             "transmission.manual.gears.bearing_friction=0",
         ],
     ),
@@ -304,9 +303,6 @@ fn twice_the_car_burns_twice_the_fuel() {
         "engine.inertia_torque_nm",
         "engine.electrical_w",
         "engine.accessory_nm",
-        "transmission.manual.gears.bearing_factor",
-        "transmission.manual.gears.bearing_heating_w",
-        "transmission.manual.gears.preload_factor",
         "transmission.manual.launch.friction_clutch.gain_nm_per_rpm2",
         "thermal.engine.block_kj_k",
         "thermal.engine.oil_kj_k",
@@ -328,16 +324,13 @@ fn twice_the_car_burns_twice_the_fuel() {
         "thermal.transmission.case_air_v07_w_k",
         "thermal.transmission.bell_housing_w_k",
     ];
+    let number = |key: &str| -> f64 {
+        let info = plain.keys.iter().find(|k| k.key == key);
+        let info = info.unwrap_or_else(|| panic!("no key {key}"));
+        info.value.parse().unwrap()
+    };
     for key in doubled {
-        let info = plain
-            .keys
-            .iter()
-            .find(|k| k.key == key)
-            .unwrap_or_else(|| panic!("no key {key}"));
-        sets.push(format!(
-            "{key}={:?}",
-            2.0 * info.value.parse::<f64>().unwrap()
-        ));
+        sets.push(format!("{key}={:?}", 2.0 * number(key)));
     }
     let line = plain
         .keys
@@ -351,13 +344,14 @@ fn twice_the_car_burns_twice_the_fuel() {
             .map(|r| vec![r[0], 2.0 * r[1]])
             .collect::<Vec<_>>()
     ));
-    // Seals by their number, teeth by their width; churning without the root of the oil's volume, which is doubled for its heat (CH-1).
+    // Bearings and seals by their number, teeth by their width; churning without the root of the oil's volume, which is doubled for its heat (CH-1).
     sets.extend([
+        "transmission.manual.gears.bearings=[[0, 4, 50, 30, 2, 0], [1, 4, 50, 30, 4, 0.9], [2, 4, 62, 45, 4, 1.8]]".into(),
         "transmission.manual.gears.seals=[[0, 2, 25], [2, 4, 38]]".into(),
         "transmission.manual.gears.stages=[[75, 2.25, 40, 28], [115, 2.6, 60, 28]]".into(),
         format!(
             "transmission.manual.gears.churning_factor={:?}",
-            10.0 / 2f64.powf(0.1)
+            2.0 * number("transmission.manual.gears.churning_factor") / 2f64.powf(0.1)
         ),
     ]);
     let twice = try_car("rover_216_5mt", &sets).unwrap();

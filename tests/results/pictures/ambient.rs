@@ -38,7 +38,8 @@ fn fuel_at_the_ends_is_that_of_the_first_start() {
 
 #[test]
 fn the_excess_ranges_from_minimum_to_maximum_and_is_called_more_only_if_always_positive() {
-    let title_for = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
+    let none = |_: usize, _: f64, _: f64| None;
+    let title_for = |excess| title(&ambient_penalty(&matrix(excess), "cars", &none).unwrap().svg);
     for (excess, wanted, more) in [
         ([6.31, 7.04, 7.82], [6.31, 7.82], true),
         ([1.2, -0.4, 3.1], [-0.4, 3.1], false),
@@ -54,6 +55,39 @@ fn the_excess_ranges_from_minimum_to_maximum_and_is_called_more_only_if_always_p
             "{title}"
         );
     }
+}
+
+/// The band is that of the first start, in the order of the temperatures, in picture and table; where it holds both signs the title says so.
+#[test]
+fn the_excess_has_its_range() {
+    let range = |baseline: usize, degc: f64, percent: f64| {
+        assert_eq!(baseline, 1);
+        Some([percent - 9.0, percent + 0.1 * degc])
+    };
+    let picture = ambient_penalty(&matrix([6.3, 7.0, 7.8]), "cars", &range).unwrap();
+    check(&picture);
+    assert!(picture.svg.contains("class=\"band\""));
+    let title = title(&picture.svg);
+    assert!(
+        title.contains("less than the error of the model"),
+        "{title}"
+    );
+    let last = picture.table.columns.len();
+    assert_eq!(picture.table.columns[last - 1].0, "over other, 90 % to");
+    let ends: Vec<[&str; 3]> = picture
+        .table
+        .rows
+        .iter()
+        .map(|row| [&*row[0], &row[last - 2], &row[last - 1]])
+        .collect();
+    assert_eq!(
+        ends,
+        [
+            ["\u{2212}10", "\u{2212}2.0", "6.0"],
+            ["20", "\u{2212}2.7", "8.3"],
+            ["40", "\u{2212}1.2", "11.8"]
+        ]
+    );
 }
 
 #[test]

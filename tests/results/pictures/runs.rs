@@ -5,6 +5,7 @@ use cvtcycle::report::charts::{
     Picture, bin_losses, fuel_bars, losses, operating_points, temperatures,
 };
 
+use super::svg_checks::check_drawing;
 use crate::fixtures::every::{all, every_plot};
 use crate::fixtures::{CVT, history, phases, rows, run};
 
@@ -62,6 +63,20 @@ fn every_plot_is_a_sound_and_accessible_picture() {
             }
         }
     }
+}
+
+/// On a phone every plot is 360 px wide with its text at 11 px; nothing leaves it, no text lies on another.
+#[test]
+fn every_plot_fits_on_a_phone() {
+    let mut count = 0;
+    for (name, picture) in every_plot() {
+        let narrow = picture.narrow.svg();
+        let narrow = narrow.unwrap_or_else(|| panic!("{name}: no drawing"));
+        println!("{name}");
+        check_drawing(&narrow, picture.table.rows.len(), 360.0);
+        count += 1;
+    }
+    assert!(count > 40);
 }
 
 #[test]
@@ -231,7 +246,7 @@ fn axes_series_and_names_can_be_read_as_text() {
                 "Time [s]",
             ],
         ),
-        ("losses", &["Loss power [W]", "Time [s]"]),
+        ("losses", &["Energy lost, as fuel [L/100 km]", "Time [s]"]),
         (
             "operating_points",
             &[
@@ -336,7 +351,7 @@ fn stacked_losses_keep_their_energy() {
 fn bars_start_at_zero_and_have_the_height_of_their_values() {
     let history = history(true, &rows(10, 1.0, true), &phases());
     let run = run("car", &history);
-    let Picture { svg, table } = fuel_bars(std::slice::from_ref(&run));
+    let Picture { svg, table, .. } = fuel_bars(std::slice::from_ref(&run));
     let document = roxmltree::Document::parse(&svg).unwrap();
     let bars: Vec<_> = document
         .descendants()
@@ -376,7 +391,7 @@ fn cells_hold_all_time_in_which_the_engine_runs() {
         (rows(400, 0.1, true), 40.0),
     ] {
         let history = history(true, &rows, &phases());
-        let Picture { svg, table } = operating_points(&[run("car", &history)]);
+        let Picture { svg, table, .. } = operating_points(&[run("car", &history)]);
         let seconds: f64 = table
             .rows
             .iter()

@@ -28,9 +28,26 @@ struct Box {
     y: (f64, f64),
 }
 
-/// Checks numbers, texts that overlap or leave the canvas, a width within A4, a table row for each mark, and equal lengths of rows.
+/// Checks numbers, texts that overlap or leave the canvas, a width within A4, a table row for each mark, and equal lengths of rows; and the drawing for
+/// a phone, with text of 11 px at 360 px.
 pub fn check(picture: &Picture) {
-    let svg = &picture.svg;
+    let rows = picture.table.rows.len();
+    check_drawing(&picture.svg, rows, 880.0);
+    if let Some(narrow) = picture.narrow.svg() {
+        check_drawing(&narrow, rows, 360.0);
+    }
+    for row in &picture.table.rows {
+        assert_eq!(row.len(), picture.table.columns.len(), "{row:?}");
+        assert!(
+            !row.iter()
+                .any(|cell| cell.contains("NaN") || cell.contains("inf")),
+            "{row:?}"
+        );
+    }
+}
+
+/// Checks a drawing, whose title is whole.
+pub fn check_drawing(svg: &str, rows: usize, most_wide: f64) {
     let doc = roxmltree::Document::parse(svg).expect("well-formed");
     let size = |name: &str| {
         doc.root_element()
@@ -40,7 +57,7 @@ pub fn check(picture: &Picture) {
     };
     let (width, height) = (size("width"), size("height"));
     assert!(
-        width <= 880.0 && height > 100.0 && height < 2000.0,
+        width <= most_wide && height > 100.0 && height < 4000.0,
         "{width} {height}"
     );
     let mut boxes: Vec<Box> = Vec::new();
@@ -54,8 +71,7 @@ pub fn check(picture: &Picture) {
         }
         if let Some(row) = node.attribute("data-row") {
             assert!(
-                row.parse::<usize>()
-                    .is_ok_and(|row| row < picture.table.rows.len()),
+                row.parse::<usize>().is_ok_and(|row| row < rows),
                 "row {row}"
             );
         }
@@ -82,14 +98,12 @@ pub fn check(picture: &Picture) {
             );
         }
     }
-    for row in &picture.table.rows {
-        assert_eq!(row.len(), picture.table.columns.len(), "{row:?}");
-        assert!(
-            !row.iter()
-                .any(|cell| cell.contains("NaN") || cell.contains("inf")),
-            "{row:?}"
-        );
-    }
+    let bold = |node: &roxmltree::Node| node.attribute("font-weight") == Some("bold");
+    let title = doc
+        .descendants()
+        .find(|node| node.has_tag_name("text") && bold(node));
+    let title = title.and_then(|node| node.text()).unwrap_or_default();
+    assert!(!title.contains('\u{2026}'), "cut: {title}");
 }
 
 /// Approximate box of a text, pixels.

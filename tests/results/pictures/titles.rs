@@ -1,17 +1,17 @@
 //! Titles are sentences with numbers of their table.
 
-use cvtcycle::output::Component;
+use cvtcycle::output::{Component, History, Row};
 use cvtcycle::report::charts::figures::{
     CarEnergy, CarLosses, DifferenceTerm, EnergyDifference, OverlayPanel, PhaseLosses,
     TraceDifference, difference_bars, energy_flow, loss_by_component, loss_by_phase,
     trace_difference, transmission_flow,
 };
 use cvtcycle::report::charts::{
-    Picture, fuel_bars, losses, operating_points, pressure, temperatures,
+    Picture, PlotRun, fuel_bars, losses, operating_points, pressure, temperatures,
 };
 
 use super::svg_checks::{check, numbers};
-use crate::fixtures::{history, phases, rows, run};
+use crate::fixtures::{FUEL_KJ, history, phases, rows, run};
 use crate::titles::{number, written};
 
 /// Title, without the subject on request.
@@ -29,36 +29,57 @@ fn sum<'a>(rows: impl Iterator<Item = &'a Vec<String>>, column: usize) -> f64 {
     rows.map(|row| numbers(&row[column])).sum()
 }
 
+/// Truth: the sums of the rows of the drive, as fuel of that energy.
 #[test]
-fn the_losses_over_time_of_a_title_are_those_of_the_table() {
-    let (a, b) = (
-        history(true, &rows(1180, 1.0, true), &phases()),
-        history(false, &rows(1180, 1.0, false), &phases()),
-    );
-    let picture = losses(&[run("A", &a), run("B", &b)]);
+fn the_losses_over_time_are_those_of_the_drive() {
+    let drives = [rows(1180, 1.0, true), rows(1180, 1.0, false)];
+    let [a, b] = [0, 1].map(|k| history(k == 0, &drives[k], &phases()));
+    let lost = |history: &History, k: usize| {
+        let parts = history.components();
+        let of = |row: &Row| parts.iter().map(|part| row.loss_w[*part]).sum::<f64>() * row.dt_s;
+        drives[k].iter().map(of).sum::<f64>() / 1e3
+    };
+    let litres = |run: &PlotRun, kj: f64| kj * run.group_fuel[2].1 / FUEL_KJ;
+    let runs = [run("A", &a), run("B", &b)];
+    let picture = losses(&runs);
     check(&picture);
-    let kj = |name: &str| {
-        let column = picture
-            .table
-            .columns
-            .iter()
-            .position(|(own, _)| own == name)
-            .unwrap();
-        let energy = |row: &Vec<String>| numbers(&row[1]) * numbers(&row[column]);
-        picture.table.rows.iter().map(energy).sum::<f64>() / 1e3
+    let wanted = [0, 1].map(|k| litres(&runs[k], lost(runs[k].history, k)));
+    let last = picture.table.rows.last().unwrap();
+    let cell = |name: &str| {
+        let names = picture.table.columns.iter();
+        numbers(
+            &last[names
+                .map(|(own, _)| own)
+                .position(|own| own == name)
+                .unwrap()],
+        )
     };
     let said = numbers_in(title(&picture).split(':').next().unwrap());
-    assert_eq!(said.len(), 2, "{}", title(&picture));
-    for (said, wanted) in said.into_iter().zip([kj("A: all"), kj("B: all")]) {
-        assert!((said - wanted).abs() < 0.6, "{said} {wanted}");
+    // "A loses 0.61 L/100 km, B 0.32": the unit has a number as well.
+    assert_eq!((said.len(), said[1]), (3, 100.0), "{}", title(&picture));
+    for (k, name) in [(0, "A: all"), (1, "B: all")] {
+        assert!(
+            (cell(name) - wanted[k]).abs() < 2e-3 * wanted[k] + 1e-3,
+            "{} {wanted:?}",
+            cell(name)
+        );
+        assert!(
+            (said[2 * k] - wanted[k]).abs() < 0.006 * wanted[k] + 0.006,
+            "{said:?} {wanted:?}"
+        );
     }
-    let own = losses(&[run("A", &a)]);
-    // "A loses 300 kJ, the largest part in pump (80 kJ)": most is more than half.
-    let [whole, part] = numbers_in(title(&own).split(':').next().unwrap())[..] else {
-        panic!("{}", title(&own))
+    // Each line rises and has its name with its last number.
+    let rises = |column: usize| {
+        let of = picture.table.rows.iter().map(|row| numbers(&row[column]));
+        of.filter(|x| x.is_finite()).collect::<Vec<_>>().is_sorted()
     };
+    assert!((2..picture.table.columns.len()).all(rises));
+    assert!(picture.svg.contains(">All "));
+    let own = losses(&runs[..1]);
     let most = title(&own).contains("most of it in");
     let largest = title(&own).contains("the largest part in");
+    let said = numbers_in(title(&own).split(':').next().unwrap());
+    let (whole, part) = (said[0], said[2]);
     assert!(
         most != largest && most == (part > 0.5 * whole),
         "{}",

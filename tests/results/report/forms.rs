@@ -21,9 +21,15 @@ fn document() -> Document {
         Picture {
             svg: svg.clone(),
             table: table.clone(),
+            ..Picture::default()
         },
     );
-    section.figure("y", "Again", Picture { svg, table });
+    let again = Picture {
+        svg,
+        table,
+        ..Picture::default()
+    };
+    section.figure("y", "Again", again);
     Document {
         title: "T \"q\" <i>".into(),
         sections: vec![section],

@@ -127,9 +127,13 @@ fn words_of(page: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Drawing of each figure, from its page.
+/// Drawing of each figure, from its page; without those for a narrow screen.
 fn drawings(page: &str) -> Vec<&str> {
     page.match_indices("<svg")
+        .filter(|(at, _)| {
+            let before = page[..*at].rsplit("class=\"drawing").next();
+            before.is_some_and(|rest| !rest.starts_with(" narrow"))
+        })
         .map(|(at, _)| &page[at..at + page[at..].find("</svg>").unwrap() + 6])
         .collect()
 }

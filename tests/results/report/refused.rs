@@ -272,7 +272,7 @@ fn a_study_of_another_case_stays_out_of_the_answer() {
     assert_eq!(
         place
             .text("other/report.html")
-            .matches("id=\"fig-ambient_fuel\"")
+            .matches("id=\"fig-ambient_penalty\"")
             .count(),
         1,
         "named twice, shown once"

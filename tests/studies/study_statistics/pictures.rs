@@ -168,7 +168,7 @@ fn legends_lie_below_the_data() {
 #[test]
 fn every_mark_has_its_row_and_every_row_all_its_cells() {
     let mut marks = 0;
-    for (name, Picture { svg, table }) in every_plot() {
+    for (name, Picture { svg, table, .. }) in every_plot() {
         assert!(
             !table.columns.is_empty()
                 && table
@@ -360,7 +360,7 @@ fn a_tornado_says_where_low_and_high_lead() {
         subject: "a study",
         ..Shown::default()
     };
-    let Picture { svg, table } = tornado_plot(&shown, &found);
+    let Picture { svg, table, .. } = tornado_plot(&shown, &found);
     let document = Document::parse(&svg).unwrap();
     let rows: Vec<&str> = class(&document, "row").filter_map(|n| n.text()).collect();
     assert_eq!(rows, ["rising", "falling", "one side"]);
@@ -466,7 +466,7 @@ fn the_share_above_zero_is_written_and_what_is_below_shaded() {
         nominal: Some(0.31),
         published: Some([0.4, 0.6]),
     };
-    let Picture { svg, table } = lone(&gaps, known);
+    let Picture { svg, table, .. } = lone(&gaps, known);
     assert!(
         svg.contains(&format!("is above zero in {above} of 777 pairs"))
             && svg.contains("1 missing")

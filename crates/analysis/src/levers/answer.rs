@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use super::request::{ColumnNote, LeverNotes};
 use crate::draws::failed_checks;
+use crate::words::decimals;
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, ProblemKind};
 use cvtcycle_output::fleet_spread::{FleetRange, fuel_range};
@@ -97,6 +98,19 @@ pub struct LeverBlock {
     pub rows: Vec<LeverRow>,
     /// The foremost single levers against each other, the better one first.
     pub between: Vec<Between>,
+}
+
+impl LeverBlock {
+    /// Decimals of the changes of the fuel in a table of this block, one for all rows: those that half of its ranges warrant, at least one.
+    #[must_use]
+    pub fn decimals(&self) -> usize {
+        let ranges = self.rows.iter().filter(|row| row.n > 0);
+        let of = |row: &LeverRow| decimals([row.low_percent.value, row.high_percent.value]);
+        let mut all: Vec<usize> = ranges.map(of).collect();
+        all.sort_unstable();
+        all.get(all.len() / 2)
+            .map_or(1, |digits| (*digits).clamp(1, 2))
+    }
 }
 
 /// Two levers against each other, draw by draw.

@@ -29,6 +29,12 @@ pub struct At {
 pub struct Node {
     /// Engine speed, rad/s.
     pub engine_rad_s: f64,
+    /// Engine speed at the end of the step, rad/s.
+    pub end_rad_s: f64,
+    /// Torque of the accessories, Nm.
+    pub accessories_nm: f64,
+    /// Power of the brakes where fuel is not cut in overrun, W.
+    pub brake_w: f64,
     /// Crank torque without inertia where fuel is not cut in overrun, Nm.
     pub fired_nm: f64,
     /// The same where it is cut.
@@ -60,6 +66,9 @@ impl Node {
     pub fn never(at: &At, engine_rad_s: f64, locked_rad_s: f64, locks: [bool; 2]) -> Node {
         Node {
             engine_rad_s,
+            end_rad_s: engine_rad_s,
+            accessories_nm: 0.0,
+            brake_w: 0.0,
             fired_nm: 0.0,
             cut_nm: 0.0,
             drag_nm: 0.0,
@@ -88,6 +97,9 @@ impl Node {
         }
         Node {
             engine_rad_s: mid(|n| n.engine_rad_s),
+            end_rad_s: mid(|n| n.end_rad_s),
+            accessories_nm: mid(|n| n.accessories_nm),
+            brake_w: mid(|n| n.brake_w),
             fired_nm: mid(|n| n.fired_nm),
             cut_nm: mid(|n| n.cut_nm),
             drag_nm: mid(|n| n.drag_nm),

@@ -197,6 +197,7 @@ impl Scene<'_> {
         let hold = Hold {
             ratio,
             clamp,
+            end: None,
             paced: false,
         };
         let one = |cut_rad_s: f64| self.driven(reference, k, &place, (&hold, cut_rad_s));
@@ -227,6 +228,9 @@ impl Scene<'_> {
         };
         let node = Node {
             engine_rad_s: w,
+            end_rad_s: by.engine_end_rad_s,
+            accessories_nm,
+            brake_w: fired.brake_w,
             fired_nm: fired.engine_torque_nm + accessories_nm,
             cut_nm: cut.engine_torque_nm + accessories_nm,
             drag_nm,
@@ -234,7 +238,7 @@ impl Scene<'_> {
             own_drag_nm,
             heat_w: loss_heat_w(self.car, &cut.loss_w),
             safety: f64::NAN,
-            deficit_w: match fired.flags.contains(Flags::MISSED_TRACE) {
+            deficit_w: match fired.flags.contains(Flags::FULL_LOAD) {
                 true => fired.deficit_w,
                 false => 0.0,
             },

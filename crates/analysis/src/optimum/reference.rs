@@ -70,6 +70,7 @@ impl Reference {
             holds.push(hold.unwrap_or(Hold {
                 ratio: row.belt_ratio,
                 clamp: None,
+                end: None,
                 paced: false,
             }));
             rows.push(*row);

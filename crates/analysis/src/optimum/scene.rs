@@ -70,6 +70,8 @@ impl<'a> Scene<'a> {
             sump_k,
             output_rad_s: f64::INFINITY,
             idle_rad_s: 0.0,
+            faster_rad_s: 0.0,
+            dt_s: 1.0,
         };
         let coupling = &self.cvt.coupling;
         let other = |before: &State| {
@@ -126,7 +128,7 @@ impl<'a> Scene<'a> {
     ) -> Hold {
         let kept = state.transmission.as_ref();
         let Some((coupled, before)) = kept.and_then(|kept| {
-            let belt = kept.cvt.as_ref().map(|cvt| cvt.belt.geometry.ratio);
+            let belt = kept.cvt.as_ref().map(|cvt| cvt.shifting.ratio);
             Some((kept.driveline.coupled, belt?))
         }) else {
             return hold;
@@ -160,6 +162,9 @@ impl<'a> Scene<'a> {
             speed_rad_s: before_rad_s,
             ..state.running
         };
+        let lowest = self.cvt.ratio.low * self.cvt.final_drive.ratio;
+        let end_rad_s = step.end_speed_m_s / car.road_load.wheel_radius_m;
+        let running = running.turning([before_rad_s, before_rad_s.min(lowest * end_rad_s)]);
         let (coolant_k, oil_k) = (t[COOLANT], t[ENGINE_OIL]);
         let mut engine = car.engine.in_step(
             coolant_k,
@@ -193,6 +198,7 @@ impl<'a> Scene<'a> {
         let mut state = *state;
         if let Some(cvt) = state.transmission.as_mut().and_then(|t| t.cvt.as_mut()) {
             cvt.belt = BeltAtRatio::new(&self.cvt.belt, ratio);
+            cvt.shifting.ratio = ratio;
         }
         state
     }
@@ -234,6 +240,7 @@ impl<'a> Scene<'a> {
         Hold {
             ratio,
             clamp,
+            end: None,
             paced: false,
         }
     }
@@ -262,6 +269,8 @@ impl<'a> Scene<'a> {
             sump_k: before.heat.node_k[SUMP] + warmer_k,
             output_rad_s: ratio * self.secondary_rad_s[k],
             idle_rad_s: engine.idle_rad_s(),
+            faster_rad_s: 0.0,
+            dt_s: self.steps[k].dt_s,
         };
         [false, true].map(|past| coupling.hold(&signals, past).coupled)
     }

@@ -121,7 +121,7 @@ impl<'a> Problem<'a> {
             (Some(nodes), Some(place)) => {
                 let node = Node::at_place(nodes, place);
                 let scene = self.scene;
-                scene.rolling_at(before, x.exp(), node.engine_rad_s, node.mode)
+                scene.rolling_at(before, x.exp(), node.end_rad_s, node.mode)
             }
             _ => self.scene.in_ratio(before, x.exp()),
         }
@@ -148,13 +148,17 @@ impl<'a> Problem<'a> {
         let w = node.engine_rad_s;
         let cut = from.engine.cut_share;
         let steady_nm = node.cut_nm.max(node.fired_nm - cut * node.drag_nm);
-        let wanted_nm = (self.scene.kinetic_j(w) - from.kinetic_j) / dt_s / w;
+        let wanted_nm = (self.scene.kinetic_j(node.end_rad_s) - from.kinetic_j) / dt_s / w;
+        let braked_w = node.brake_w - (node.fired_nm - steady_nm) * w;
         let most_nm = (1.0 - self.limits.reserve) * node.full_load_nm;
         let free = node.deficit_w > 0.0 || node.mode == Mode::Open;
         if !free && steady_nm + wanted_nm.max(0.0) > most_nm {
             return None;
         }
-        let torque_nm = if wanted_nm > 0.0 {
+        let torque_nm = if wanted_nm > 0.0 && braked_w > 0.0 && steady_nm < node.accessories_nm {
+            // SI-5: the brakes give what they take; the rest lags in a drive, and is burnt at once here.
+            (wanted_nm - braked_w / w).clamp(0.0, (node.full_load_nm - steady_nm).max(0.0))
+        } else if wanted_nm > 0.0 {
             wanted_nm.min((node.full_load_nm - steady_nm).max(0.0))
         } else {
             wanted_nm.max(-(steady_nm + node.own_drag_nm)).min(0.0) // SI-2
@@ -243,7 +247,7 @@ impl<'a> Stages for Problem<'a> {
         let (engine_rad_s, kinetic_j, locked) = match (nodes, place) {
             (Some(nodes), Some(place)) => {
                 let node = Node::at_place(nodes, place);
-                let w = node.engine_rad_s;
+                let w = node.end_rad_s;
                 (w, self.scene.kinetic_j(w), node.mode == Mode::Locked)
             }
             _ => {

@@ -83,6 +83,7 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
     let count = |k: usize| cells.get(k)?.parse().ok();
     let number = |k: usize| cells.get(k)?.parse().ok();
     Some(DrawnDifference {
+        fuel_l_per_100km: None,
         plan: PLAN.to_owned(),
         draws: count(7)?,
         left_out: DRAWS - count(7)?,

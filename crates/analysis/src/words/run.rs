@@ -17,7 +17,7 @@ use cvtcycle_output::summary::{
 
 use super::intervals as drawn;
 use super::{
-    against_print, between, decimals, difference_of_cars, more_or_less, of_cars, of_difference,
+    against_print, between, decimals, difference_of_cars, fuel_ranges, more_or_less, of_difference,
     than,
 };
 use crate::attribute::answer as price;
@@ -52,14 +52,20 @@ pub fn assess_fleet(summary: &mut Summary) {
     let is_named = |run: &RunSummary| Kind::Vehicle.names().contains(&run.vehicle.as_str());
     let is_shipped = summary.runs.iter().all(is_named);
     let roles: Vec<String> = summary.runs.iter().map(|run| run.role.clone()).collect();
+    // Measured cars drove their cycle: nothing is known of one that does not.
+    let drives: Vec<bool> = summary
+        .runs
+        .iter()
+        .map(|run| run.faults().is_empty())
+        .collect();
     let twin = summary
         .runs
         .first()
         .map_or_else(String::new, |run| format!("{}_twin", run.vehicle));
-    let baselines = kinds.iter().zip(&roles).skip(1);
-    for (comparison, (other, role)) in summary.comparison.iter_mut().zip(baselines) {
+    let baselines = kinds.iter().zip(&roles).zip(&drives).skip(1);
+    for (comparison, ((other, role), drives_too)) in summary.comparison.iter_mut().zip(baselines) {
         // Measured cars differ by more than a change of one of them.
-        if role == UNCHANGED {
+        if role == UNCHANGED || !(drives[0] && *drives_too) {
             continue;
         }
         let of = Compared {
@@ -82,8 +88,8 @@ pub fn assess_fleet(summary: &mut Summary) {
             .filter_map(|(name, percent)| Some((name.to_owned(), of_part(percent)?)))
             .collect();
     }
-    for run in &mut summary.runs {
-        let fuel = run.headline_fuel();
+    for (run, drives) in summary.runs.iter_mut().zip(drives) {
+        let fuel = run.headline_fuel().filter(|_| drives);
         run.fleet = fuel
             .filter(|_| !is_named(run))
             .and_then(|fuel| fuel_range(&run.transmission, &cycle, degc, fuel));
@@ -208,6 +214,27 @@ fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f
     }
 }
 
+/// Says how far rate and resolution of a log leave the fuel and the difference to each baseline open; `None` of speeds that were not smoothed.
+pub fn resolution_left(summary: &Summary) -> Option<String> {
+    let own = summary.recording.as_ref()?;
+    let (fuel, run) = (own.fuel?, summary.runs.first()?);
+    let unit = run.over().unit();
+    let [low, high] = fuel.map(|end| fixed(end, 2));
+    let differences = summary
+        .comparison
+        .iter()
+        .zip(&summary.runs[1..])
+        .enumerate();
+    let differences = differences.filter_map(|(k, (_, other))| {
+        let ends = own.percent.get(k).copied().flatten()?;
+        Some(format!(", {} to {}", between(ends, "%"), other.label()))
+    });
+    let differences: String = differences.collect();
+    Some(format!(
+        "Rate and resolution of the log leave {low} to {high} {unit}{differences}."
+    ))
+}
+
 /// The first lines of a run, a sentence each.
 pub fn sentences(summary: &Summary) -> Vec<String> {
     let Some(run) = summary.runs.first() else {
@@ -221,8 +248,15 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let mut explained = [false, run.fleet.is_some()];
     let recording = summary.recording.as_ref();
     let left = |k: usize| recording.and_then(|own| own.percent.get(k).copied().flatten());
+    // Next to a car that is like for like another car says little: the table has it.
+    let is_other = |k: usize| summary.runs[k + 1].role != UNCHANGED;
+    let mut compared = summary.comparison.iter().enumerate();
+    let has_alike = compared.any(|(k, of)| is_other(k) && of.differences.is_empty());
     let against = summary.comparison.iter().enumerate().filter_map(|(k, of)| {
-        let said = against(of, &summary.runs[k + 1], explained).map(|said| match left(k) {
+        if has_alike && is_other(k) && !of.differences.is_empty() {
+            return None;
+        }
+        let said = against(of, [run, &summary.runs[k + 1]], explained).map(|said| match left(k) {
             Some(ends) => format!(
                 "{said} [{} by the resolution of the log]",
                 between(ends, "%")
@@ -235,7 +269,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         said
     });
     let against: String = against.collect();
-    let range = run.fleet.as_ref().map_or_else(String::new, of_cars);
+    let range = fuel_ranges(run);
     let resolution = recording
         .and_then(|own| own.fuel)
         .map_or_else(String::new, |ends| {
@@ -351,9 +385,12 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
         let [low, median, high] = of.percent;
         let n = usize::try_from(of.draws).ok()?;
         let mut doubts = Enough::from_draws(n, confidence).doubts(confidence);
-        if (percent - median).abs() > NEAR_MEDIAN * (high - low) {
-            let decimals = decimals([low, high]);
-            let [median, percent] = [median, percent].map(|x| signed(x, decimals));
+        let decimals = decimals([low, high]);
+        let [in_median, as_is] = [median, percent].map(|x| signed(x, decimals));
+        let is_far = (percent - median).abs() > NEAR_MEDIAN * (high - low);
+        // Numbers that are written alike are no doubt.
+        if is_far && in_median != as_is {
+            let (median, percent) = (in_median, as_is);
             doubts.push(format!(
                 "the median of the varied runs is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
             ));
@@ -368,7 +405,7 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
 pub const DOUBT: &str = "doubt: ";
 
 /// The doubts about what was read of each car: numbers from it are as doubtful.
-fn input_doubts(summary: &Summary) -> Vec<String> {
+pub fn input_doubts(summary: &Summary) -> Vec<String> {
     let of = |run: &RunSummary| {
         let doubts = run.notes.iter().filter(|note| note.starts_with(DOUBT));
         let lines: Vec<String> = doubts
@@ -440,7 +477,7 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
 /// 252 of 256 runs)".
 fn against(
     comparison: &Comparison,
-    other: &RunSummary,
+    [own, other]: [&RunSummary; 2],
     [explained, explained_fleet]: [bool; 2],
 ) -> Option<String> {
     let percent = comparison.fuel_percent?;
@@ -450,6 +487,7 @@ fn against(
         false => comparison.baseline.as_str(),
     };
     let faults = other.faults();
+    let is_failed = !faults.is_empty() || !own.faults().is_empty();
     let baseline = match faults.is_empty() {
         true => baseline.to_owned(),
         false => format!("{baseline}, which failed ({})", faults.join(", ")),
@@ -489,6 +527,7 @@ fn against(
         }
         (None, None) => match failing.and_then(DrawnDifference::failures_in_words) {
             Some(words) => format!("no range: {words}"),
+            None if is_failed => "no range: a car that fails is compared".to_owned(),
             None if is_change => "range not computed".to_owned(),
             None => "how sure this is, no measured cars tell".to_owned(),
         },

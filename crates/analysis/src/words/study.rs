@@ -27,8 +27,8 @@ pub fn sentences(answer: &Answer, outline: &StudyManifest) -> Vec<String> {
     list
 }
 
-/// Range of the difference of the subject to a car of a study, by its place, for 90 % of such cars, where a car is not shipped: measured cars tell. None of
-/// studies of earlier versions.
+/// Range of the difference of the subject to a car of a study, by its place, for 90 % of such cars, as a run has it: measured cars tell. None of the same
+/// car, and of studies of earlier versions.
 #[must_use]
 pub fn fleet_range(
     outline: &StudyManifest,
@@ -36,12 +36,16 @@ pub fn fleet_range(
     percent: f64,
     on: DrivenOn,
 ) -> Option<FleetRange> {
-    let places = [0, baseline];
-    let shipped = Kind::Vehicle.names();
-    let is_shipped = |k: usize| Some(shipped.contains(&outline.cars.get(k)?.as_str()));
-    if is_shipped(0)? && is_shipped(baseline)? {
+    let base = &outline.plan.base;
+    // A car against itself with another oil or another value: no pair of measured cars differs by that alone.
+    let is_same = base
+        .baselines
+        .as_ref()
+        .and_then(|names| names.get(baseline.checked_sub(1)?));
+    if is_same.is_some_and(|name| *name == base.vehicle) {
         return None;
     }
+    let places = [0, baseline];
     let kind = |k: usize| {
         let kind = outline.kinds.get(k)?.as_str();
         (!kind.is_empty()).then_some(kind)

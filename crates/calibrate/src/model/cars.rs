@@ -66,14 +66,25 @@ impl<'p> Cars<'p> {
         }
         for (k, free) in plan.parameters.iter().enumerate() {
             let found: Vec<(&FittedCar, &Param)> = (cars.fitted.iter())
-                .filter_map(|car| {
-                    let own = car.params.iter().find(|(place, _)| *place == k);
-                    own.map(|(_, param)| (car, param))
+                .flat_map(|car| {
+                    let own = car.params.iter().filter(|(place, _)| *place == k);
+                    own.map(move |(_, param)| (car, param))
                 })
                 .collect();
             match found.first() {
-                Some((car, param)) => {
-                    problems.extend(at_bounds(free, param, &car.base));
+                Some((_, param)) => {
+                    let mut at_bounds = found
+                        .iter()
+                        .map(|(car, param)| at_bounds(free, param, &car.base));
+                    problems.extend(
+                        at_bounds
+                            .find(|found| !found.is_empty())
+                            .unwrap_or_default(),
+                    );
+                    problems.extend(of_other_unit(free, &found));
+                    if problems.is_empty() {
+                        problems.extend(in_no_vehicle(free, &found));
+                    }
                     parameters.push(parameter((free, free.name(plan)), param, &mut problems));
                     cars.known.push((param.base(), param.unit().to_owned()));
                 }
@@ -130,10 +141,10 @@ impl<'p> Cars<'p> {
         let mut problems = Problems::new();
         let mut params = Vec::new();
         for (k, free) in free {
-            match base.param(&free.key) {
-                Ok(param) => params.push((k, param)),
-                Err(found) => problems.push(not_free(free, found, vehicle)),
-            }
+            let (found, refused) = in_vehicle(free, &base);
+            params.extend(found.into_iter().map(|param| (k, param)));
+            let refused = refused.into_iter();
+            problems.extend(refused.map(|(key, found)| not_free(free, key, found, vehicle)));
         }
         // With the parameters that were found more can be checked; nothing is computed after a problem.
         self.by_name.insert(name, self.fitted.len());
@@ -184,7 +195,7 @@ impl<'p> Cars<'p> {
     /// A fluid of a source's own, where one is fitted.
     fn fitted_fluid(&self, source: &Source) -> Option<Problem> {
         source.lubricant.as_ref()?;
-        let of_fluid = |free: &&FreeParameter| free.key.starts_with("lubricant.");
+        let of_fluid = |free: &&FreeParameter| free.keys().any(|key| key.starts_with("lubricant."));
         let free = self.plan.parameters.iter().find(of_fluid)?;
         let message = format!(
             "source `{}` has a fluid of its own, in which `{}` would be another value",
@@ -203,14 +214,14 @@ impl<'p> Cars<'p> {
 
     /// Parameters that an override sets.
     fn set_and_free(&self, set: &[Override], place: &Place) -> Problems {
-        let both = self.plan.parameters.iter();
-        let both = both.filter(|free| set.iter().any(|by| by.key() == free.key));
-        both.map(|free| {
-            let message = format!("`{}` is set and free", free.key);
+        let keys = self.plan.parameters.iter().flat_map(FreeParameter::keys);
+        let both = keys.filter(|key| set.iter().any(|by| by.key() == *key));
+        both.map(|key| {
+            let message = format!("`{key}` is set and free");
             let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
             problem(
                 Conflict,
-                &place.clone().of_item(&free.key),
+                &place.clone().of_item(key),
                 "set",
                 "",
                 message,
@@ -229,8 +240,64 @@ fn unused(free: &FreeParameter) -> Problem {
     problem(Conflict, &free.place, "vehicles", allowed, message, hint)
 }
 
+/// The keys of a parameter that a vehicle has, and those that it refuses. A key of another transmission is refused only if the vehicle has no
+/// key of the parameter at all.
+pub fn in_vehicle<'f>(
+    free: &'f FreeParameter,
+    base: &ParamSet,
+) -> (Vec<Param>, Vec<(&'f str, Problem)>) {
+    let (mut params, mut refused) = (Vec::new(), Vec::new());
+    for key in free.keys() {
+        match base.param(key) {
+            Ok(param) => params.push(param),
+            Err(found) => refused.push((key, found)),
+        }
+    }
+    if !params.is_empty() {
+        refused.retain(|(_, found)| found.kind != ProblemKind::WrongTransmission);
+    }
+    refused.truncate(1);
+    (params, refused)
+}
+
+/// The problem of keys that cannot have one number because their units differ.
+fn of_other_unit(free: &FreeParameter, found: &[(&FittedCar, &Param)]) -> Option<Problem> {
+    let (_, first) = found.first()?;
+    let (_, other) = found
+        .iter()
+        .find(|(_, param)| param.unit() != first.unit())?;
+    let message = format!(
+        "`{}` in `{}` and `{}` in `{}` cannot be one number",
+        first.key(),
+        first.unit(),
+        other.key(),
+        other.unit()
+    );
+    let hint = "give each a [[parameter]] of its own";
+    let allowed = "keys of one unit";
+    Some(problem(
+        Conflict,
+        &free.place,
+        "also",
+        allowed,
+        message,
+        hint,
+    ))
+}
+
+/// The problem of a key that no vehicle of the parameter has.
+fn in_no_vehicle(free: &FreeParameter, found: &[(&FittedCar, &Param)]) -> Option<Problem> {
+    let is_set = |key: &str| found.iter().any(|(_, param)| param.key() == key);
+    let key = free.keys().find(|key| !is_set(key))?;
+    let message = format!("no vehicle of this parameter has `{key}`");
+    let hint = "name one that has it in `vehicles`, or remove the key";
+    let place = free.also_place.clone().of_item(key);
+    let allowed = "keys of the vehicles";
+    Some(problem(Conflict, &place, "also", allowed, message, hint))
+}
+
 /// The problem of a key that cannot be fitted, at its place in the plan.
-fn not_free(free: &FreeParameter, found: Problem, vehicle: &str) -> Problem {
+fn not_free(free: &FreeParameter, key: &str, found: Problem, vehicle: &str) -> Problem {
     let hint = match found.kind {
         ProblemKind::WrongTransmission | ProblemKind::NotSingle => {
             format!("`cvtcycle show {vehicle}` prints its keys; words and lists are held, in `set`")
@@ -242,10 +309,14 @@ fn not_free(free: &FreeParameter, found: Problem, vehicle: &str) -> Problem {
     } else {
         found.allowed.clone()
     };
+    let (place, word) = match key == free.key {
+        true => (free.place.clone(), "key"),
+        false => (free.also_place.clone().of_item(key), "also"),
+    };
     found
-        .at(free.place.clone())
-        .key("key")
-        .value(free.key.clone())
+        .at(place)
+        .key(word)
+        .value(key)
         .allowed(allowed)
         .hint(hint)
 }

@@ -35,6 +35,7 @@ keys! {
         high: within(Bound::any()), "largest value";
         start: optional(within(Bound::any())), "first value; that of the file if absent";
         vehicles: texts(), "vehicles that have this number in common; that of [calibration] if absent";
+        also: texts(), "other keys that the number sets, in each of the vehicles that has them";
         status: words(&STATUSES, "assumed"), "how the prior is known; needed with one";
         source: optional(text()), "reason or reference for bounds and prior";
     }

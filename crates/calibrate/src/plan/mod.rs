@@ -32,6 +32,8 @@ use cvtcycle_validate::source::Source;
 pub struct FreeParameter {
     /// Dotted key, as `--set` has it.
     pub key: String,
+    /// Other keys that the number sets, in each vehicle that has them.
+    pub also: Vec<String>,
     /// Vehicles that have the number in common, by name or path; none for the plan's own.
     pub vehicles: Vec<String>,
     /// Least value, in the unit of the key.
@@ -48,11 +50,20 @@ pub struct FreeParameter {
     pub source: String,
     /// Place of its key.
     pub place: Place,
+    /// Place of its other keys.
+    pub also_place: Place,
     /// Places of its bounds.
     pub bounds: [Place; 2],
 }
 
 impl FreeParameter {
+    /// All keys that the number sets: its own first.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&self.key)
+            .chain(&self.also)
+            .map(String::as_str)
+    }
+
     /// True if a vehicle has this number.
     #[must_use]
     pub fn is_of(&self, vehicle: &str, plan: &CalibrationPlan) -> bool {

@@ -17,23 +17,25 @@ pub(super) fn read(document: &Document, file: &str) -> Result<FreeParameter, Pro
     let reader = Reader::new(document);
     let s = reader.root();
     let key = Values::text(&s, &PARAMETER.key);
-    if !key.is_empty() && !key.contains('.') {
-        let allowed = "a dotted key of the vehicle's files";
-        let message = format!("`{key}` is no dotted key");
-        s.unknown_key(
-            "key",
-            allowed,
-            &message,
-            "`cvtcycle show VEHICLE` lists the keys",
-        );
+    let also = s.texts(&PARAMETER.also);
+    judge(&s, "key", &key);
+    for other in &also {
+        judge(&s, "also", other);
     }
-    if loss_factor::is_key(&key) {
+    let mut all = std::iter::once(&key).chain(&also);
+    if let Some(twice) = all.find(|a| {
+        std::iter::once(&key)
+            .chain(&also)
+            .filter(|b| b == a)
+            .count()
+            > 1
+    }) {
         s.complain_by_name(
-            ProblemKind::Conflict,
-            "key",
-            "a parameter of the model",
-            "a factor on a loss is no parameter of the physics",
-            "fit what the loss depends on: `cvtcycle explain KEY` names the equations",
+            ProblemKind::Duplicate,
+            "also",
+            "keys other than `key`, each once",
+            &format!("`{twice}` is named twice"),
+            "remove one",
         );
     }
     let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));
@@ -77,6 +79,8 @@ pub(super) fn read(document: &Document, file: &str) -> Result<FreeParameter, Pro
             .collect(),
         source: Values::text(&s, &PARAMETER.source),
         place: s.place("key"),
+        also_place: s.place("also"),
+        also,
         bounds: ["low", "high"].map(|key| s.place(key)),
         key,
     };
@@ -87,6 +91,25 @@ pub(super) fn read(document: &Document, file: &str) -> Result<FreeParameter, Pro
     let read = reader.finish();
     read.map(|_| free)
         .map_err(|problems| problems.map(|p| p.with_context(&context)))
+}
+
+/// Complains of a key that no file has, or that is no parameter of the physics.
+fn judge(s: &Section, name: &str, key: &str) {
+    if !key.is_empty() && !key.contains('.') {
+        let allowed = "a dotted key of the vehicle's files";
+        let message = format!("`{key}` is no dotted key");
+        let hint = "`cvtcycle show VEHICLE` lists the keys";
+        s.unknown_key(name, allowed, &message, hint);
+    }
+    if loss_factor::is_key(key) {
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            name,
+            "a parameter of the model",
+            "a factor on a loss is no parameter of the physics",
+            "fit what the loss depends on: `cvtcycle explain KEY` names the equations",
+        );
+    }
 }
 
 fn prior(s: &Section) -> Option<Prior> {

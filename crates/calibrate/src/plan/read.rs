@@ -234,11 +234,14 @@ fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool
         add(Missing, &plan.place, "data", allowed, message, hint);
     }
     for (k, free) in plan.parameters.iter().enumerate() {
-        if let Some(first) = plan.parameters[..k]
-            .iter()
-            .find(|other| other.key == free.key && shares_a_vehicle(plan, other, free))
-        {
-            let (key, line) = (&free.key, first.place.line);
+        let both = plan.parameters[..k].iter().find_map(|other| {
+            let key = free
+                .keys()
+                .find(|key| other.keys().any(|own| own == *key))?;
+            shares_a_vehicle(plan, other, free).then_some((other, key))
+        });
+        if let Some((first, key)) = both {
+            let line = first.place.line;
             let message = format!("`{key}` is free twice, first in line {line}");
             add(Duplicate, &free.place, "key", "", message, "remove one");
         }

@@ -82,6 +82,7 @@ units! {
         "ns" 1.0, 1e9, 0.0, false, ["ns" "nsec" "nanosecond" "nanoseconds"];
         "min" 60.0, 1.0, 0.0, false, ["min" "mins" "minute" "minutes"];
         "h" 3600.0, 1.0, 0.0, false, ["h" "hr" "hrs" "hour" "hours"];
+        "d" 86_400.0, 1.0, 0.0, false, ["d" "day" "days"];
     SPEED:
         "km/h" 1.0, 3.6, 0.0, false, ["km_h" "kmh" "km_hr" "kph" "kmph" "kilometers_per_hour" "kilometres_per_hour"];
         "m/s" 1.0, 1.0, 0.0, false, ["m_s" "mps" "m_sec" "meters_per_second" "metres_per_second" "meters_second" "metres_second" "m_s_1" "m_s1"];
@@ -138,7 +139,15 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-const TIMES: [&str; 24] = [
+const TIMES: [&str; 32] = [
+    "datum",
+    "uhrzeit",
+    "fecha",
+    "hora",
+    "heure",
+    "ts",
+    "unix",
+    "utc",
     "time",
     "times",
     "t",

@@ -40,10 +40,11 @@ repairs! {
     empty "empty" true "rows without a time or a speed, as where channels have their own rasters, are left out";
     stamps "stamps" true "rows of one time stamp become one with their mean";
     negative "negative" true "speeds from -1 to 0 km/h become 0";
-    spikes "spikes" true "up to 3 samples against both neighbours become the line between these";
+    spikes "spikes" true "up to 3 samples against both neighbours, or a loss of the signal of up to 10 s, become the line between these";
+    held "held" true "rows that repeat a value until the next one is measured become the line between the values";
     smooth "smooth" true "speeds whose resolution or noise is coarse for their rate are smoothed";
     sort "sort" false "rows are put in the order of their times";
-    cut "cut" false "a gap while the car moves, or a jump of the speed, is bridged at 1.0 and 1.5 m/s2";
+    cut "cut" false "a gap while the car moves, a jump of the speed or of the clock, or a long gap at rest is bridged at 1.0 and 1.5 m/s2";
 }
 
 impl Repairs {

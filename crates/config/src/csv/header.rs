@@ -158,6 +158,22 @@ impl Schema {
         let mut meant = Vec::new();
         for (k, &field) in fields.iter().enumerate() {
             let unit = units.and_then(|(line, units)| Some((*line, *units.get(k)?)));
+            let meaning = |k: usize| {
+                let below = units.and_then(|(line, units)| Some(line.text_of(*units.get(k)?)));
+                match self.find(line.text_of(fields[k]), below) {
+                    Found::Column(index) => Some(&self.columns[index]),
+                    _ => None,
+                }
+            };
+            // A mean effective pressure next to its torque says the same for the engine that was measured.
+            let is_better = |own: &super::schema::Column| {
+                let mut others = (0..fields.len()).filter_map(meaning);
+                others.any(|other| !other.is_spare && other.is_same(own))
+            };
+            if meaning(k).is_some_and(|own| own.is_spare && is_better(own)) {
+                found.push(None);
+                continue;
+            }
             let index = self.column(*line, field, unit, &found, &mut meant, problems);
             found.push(index);
         }

@@ -44,6 +44,8 @@ pub struct Column {
     pub is_alias: bool,
     /// True of a column that says something of the value of a table, and spans no axis of its grid.
     pub is_extra: bool,
+    /// True if it is passed over where the table has another column of its group that is none.
+    pub is_spare: bool,
 }
 
 impl Column {
@@ -60,6 +62,16 @@ impl Column {
             hint: "",
             is_alias: false,
             is_extra: false,
+            is_spare: false,
+        }
+    }
+
+    /// The column is passed over where the table has another one of its group that is none.
+    #[must_use]
+    pub fn spare(self) -> Self {
+        Column {
+            is_spare: true,
+            ..self
         }
     }
 

@@ -167,6 +167,9 @@ fn parsed(entry: &Entry) -> Option<Cycle> {
     if US_CITY.contains(&entry.name) {
         manual = manual.with_selector_s(US_CITY_SELECTOR_S);
     }
+    if US.contains(&entry.name) {
+        manual = manual.with_tolerance_m_s(US_TOLERANCE_M_S);
+    }
     let (name, title) = (entry.name.to_owned(), entry.title.to_owned());
     Some(Cycle {
         name,
@@ -181,6 +184,10 @@ fn parsed(entry: &Entry) -> Option<Cycle> {
     })
 }
 
+/// Cycles of the US, ...
+const US: [&str; 7] = ["ftp75", "udds", "hwfet", "us06", "sc03", "nycc", "la92"];
+/// ... and their tolerance of speed, m/s: 2 mph (40 CFR 1066.425, from memory; TR-3).
+const US_TOLERANCE_M_S: f64 = 2.0 * 0.44704;
 /// Cycles of the US city test, ...
 const US_CITY: [&str; 2] = ["udds", "ftp75"];
 /// ... and the time from a start of the engine until the selector is moved to drive, s (40 CFR 86.136-90).

@@ -38,8 +38,37 @@ fn seconds(samples: &Samples, count: usize) -> Vec<f64> {
     (0..count).map(speed).collect()
 }
 
-/// Compares a recording with the shipped cycles of its duration.
+/// Compares a recording with the shipped cycles of its duration, and of its number of rows.
 pub(crate) fn likeness(samples: &Samples, resolution_m_s: f64) -> Likeness {
+    let of_time = in_time(samples, resolution_m_s);
+    match of_time.doubt.is_none() && !of_time.is_exact {
+        true => in_rows(samples, resolution_m_s).unwrap_or(of_time),
+        false => of_time,
+    }
+}
+
+/// The rows of a shipped cycle, a second apart there, with other stamps.
+fn in_rows(samples: &Samples, resolution_m_s: f64) -> Option<Likeness> {
+    let step = samples.raster().filter(|step| (step - 1.0).abs() > 0.01)?;
+    let rows = Samples {
+        time_s: (0..samples.time_s.len()).map(|k| k as f64).collect(),
+        ..samples.clone()
+    };
+    let found = in_time(&rows, resolution_m_s);
+    let is_like = found.is_exact || found.doubt.is_some();
+    let of = found.cycle.filter(|_| is_like)?;
+    let doubt = format!(
+        "this is {of} with its rows {} s apart in place of 1 s",
+        readable(step, 3)
+    );
+    Some(Likeness {
+        doubt: Some(doubt),
+        is_exact: false,
+        cycle: Some(of),
+    })
+}
+
+fn in_time(samples: &Samples, resolution_m_s: f64) -> Likeness {
     let Some((first, last)) = samples
         .time_s
         .first()
@@ -54,6 +83,7 @@ pub(crate) fn likeness(samples: &Samples, resolution_m_s: f64) -> Likeness {
     }
     let own = seconds(samples, duration as usize + 1);
     let of_name = |name: &&'static str| of_seconds(name, duration as usize);
+    let mut like: Option<Likeness> = None;
     for cycle in names().iter().filter_map(of_name) {
         for trace in [Some(&cycle.manual), cycle.automatic.as_ref()]
             .into_iter()
@@ -72,17 +102,21 @@ pub(crate) fn likeness(samples: &Samples, resolution_m_s: f64) -> Likeness {
                 lines: vec![0; time_s.len()],
                 time_s,
                 speed_m_s,
+                first_m_s: Vec::new(),
             };
             if theirs.time_s.len() < 2 {
                 continue;
             }
             let other = seconds(&theirs, own.len().min(trace.duration_s() as usize + 1));
-            if let Some(found) = compared(cycle, &own, &other, resolution_m_s) {
-                return found;
+            // Of two cycles of one family the one that it is goes first.
+            match compared(cycle, &own, &other, resolution_m_s) {
+                Some(found) if found.is_exact && found.doubt.is_none() => return found,
+                Some(found) => like = like.or(Some(found)),
+                None => {}
             }
         }
     }
-    Likeness::default()
+    like.unwrap_or_default()
 }
 
 fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> Option<Likeness> {
@@ -119,6 +153,7 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
         return Some(Likeness {
             doubt: Some(doubt),
             is_exact: false,
+            cycle: Some(cycle.name.clone()),
         });
     }
     let is_other = |(own, other): (&f64, &f64)| {
@@ -140,5 +175,6 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
     Some(Likeness {
         is_exact: all_same,
         doubt,
+        cycle: Some(cycle.name.clone()),
     })
 }

@@ -250,6 +250,7 @@ fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
             repairs: treated.repairs.clone(),
             doubts: treated.doubts.clone(),
             bounds,
+            left: treated.left,
             is_log: treated.is_recording,
             measured,
         })),
@@ -289,6 +290,7 @@ fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, P
     let mut doubts = treated.doubts;
     doubts.extend(like.doubt);
     doubts.extend(log::motions(&treated.samples));
+    doubts.extend(log::steep(rows.iter().map(|row| row.grade)));
     let (times, speeds) = (&treated.samples.time_s, &treated.samples.speed_m_s);
     let mut with = |speeds: &[f64]| {
         for (k, row) in rows.iter_mut().enumerate() {
@@ -308,6 +310,7 @@ fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, P
         repairs: treated.repairs,
         doubts,
         bounds,
+        left: treated.left,
         is_log: treated.is_recording,
         measured: Vec::new(),
     };
@@ -340,6 +343,7 @@ impl ReadRows {
             time_s: of(&|row| row.time_s.unwrap_or_default()),
             speed_m_s: of(&|row| row.speed_m_s.unwrap_or_default()),
             lines: self.rows.iter().map(|row| row.line).collect(),
+            first_m_s: Vec::new(),
         }
     }
 }

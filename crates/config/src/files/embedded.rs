@@ -26,7 +26,8 @@ embedded! {
     ];
     /// Lubricants.
     lubricants: "lubricants" ".toml" [
-        "cvtf_ezl799_class" "dexron_ii" "dexron_iii" "gear_75w80" "engine_0w20" "engine_5w30" "engine_10w40"
+        "cvtf_ezl799_class" "cvt_blend_high_friction" "cvt_blend_low_friction" "dexron_ii" "dexron_iii" "santotrac_50"
+        "gear_75w80" "engine_0w20" "engine_5w30" "engine_10w40"
     ];
     /// Conditions of the test rigs.
     rigs: "rigs" ".toml" ["rig_transmission"];

@@ -49,10 +49,30 @@ impl Sheet<'_> {
         cells.filter(|cell| !is_missing(cell))
     }
 
+    /// Cells of the last rows.
+    fn last_cells(&self, column: usize) -> impl Iterator<Item = &str> {
+        let cells = self
+            .tail
+            .iter()
+            .filter_map(move |row| row.get(column).copied());
+        cells.filter(|cell| !is_missing(cell))
+    }
+
+    /// Form of the stamps of a column: a clock or a date, in words or in figures alone.
+    pub(super) fn form(&self, column: usize) -> Option<Form> {
+        let first = self.cells(column).next()?;
+        match number(first, self.decimal_comma) {
+            None => Form::of_all(self.cells(column), self.last_cells(column)),
+            Some(_) => Form::of_figures(self.cells(column), self.last_cells(column)),
+        }
+    }
+
     /// Unit of a column by its name or by the row of units.
     pub(super) fn stated_unit(&self, quantity: Quantity, column: usize) -> Option<Unit> {
-        /// Names whose units the programs that write them document: SUMO, FASTSim.
-        const KNOWN: [(&str, &str); 6] = [
+        /// Names whose units the programs that write them document: openpilot, SUMO, FASTSim.
+        const KNOWN: [(&str, &str); 8] = [
+            ("logMonoTime", "ns"),
+            ("carState.vEgo", "m/s"),
             ("timestep_time", "s"),
             ("vehicle_slope", "deg"),
             ("cycSecs", "s"),
@@ -84,12 +104,20 @@ impl Sheet<'_> {
             return Some(Reading::Word);
         }
         let first = self.cells(column).next()?;
+        let is_time = quantity == Quantity::Time;
         if number(first, self.decimal_comma).is_none() {
-            return Form::of(first)
-                .filter(|_| quantity == Quantity::Time)
+            return is_time
+                .then(|| self.form(column))
+                .flatten()
                 .map(Reading::Stamp);
         }
         let unit = self.stated_unit(quantity, column);
+        if unit.is_none()
+            && is_time
+            && let Some(form) = self.form(column)
+        {
+            return Some(Reading::Stamp(form));
+        }
         let plain = quantity.plain_unit().filter(|_| !quantity.needs_unit());
         unit.or(plain).map(Reading::Number)
     }
@@ -132,6 +160,21 @@ impl Sheet<'_> {
                 None => {}
             }
         }
+        // The mean of a trip, or what is wanted, is no speed of the car where another is one.
+        let is_own = |source: &Source| !is_other_speed(&self.names[source.column]);
+        if chosen.speeds.iter().any(is_own) {
+            chosen.speeds.retain(is_own);
+        }
+        let is_own_column = |(quantity, column): &(Quantity, usize)| {
+            *quantity != Quantity::Speed || !is_other_speed(&self.names[*column])
+        };
+        if chosen
+            .no_unit
+            .iter()
+            .any(|own| own.0 == Quantity::Speed && is_own_column(own))
+        {
+            chosen.no_unit.retain(is_own_column);
+        }
         if chosen.speeds.is_empty() {
             self.by_values(&mut chosen);
         }
@@ -141,8 +184,10 @@ impl Sheet<'_> {
     /// A table of names and values: a column of words, one of which means the speed, and a column `value`.
     fn by_values(&self, chosen: &mut Chosen) {
         const VALUES: [&str; 6] = ["value", "values", "val", "reading", "data", "wert"];
-        let is_value =
-            |column: &usize| VALUES.contains(&crate::channel::bare(&self.names[*column]).as_str());
+        let is_value = |column: &usize| {
+            let name = crate::channel::bare(&self.names[*column]);
+            name.split('_').any(|word| VALUES.contains(&word)) && self.is_number(*column)
+        };
         let Some(value) = (0..self.names.len()).find(is_value) else {
             return;
         };
@@ -286,7 +331,11 @@ impl Sheet<'_> {
             });
         };
         // Stamps have no unit: `time=Clock:s` is read as the stamp that it is.
-        if let Some(Reading::Stamp(form)) = self.reading(quantity, column) {
+        let first = self.cells(column).next();
+        let is_number = first.is_some_and(|cell| number(cell, self.decimal_comma).is_some());
+        if let Some(Reading::Stamp(form)) = self.reading(quantity, column)
+            && (!is_number || written == form.name())
+        {
             return Ok(Reading::Stamp(form));
         }
         if quantity == Quantity::Phase {
@@ -385,6 +434,24 @@ impl Sheet<'_> {
                 .allowed("where=COLUMN:VALUE, such as where=VehId:7")),
         }
     }
+}
+
+/// True if the name of a speed says that it is a mean, or what the car should drive.
+fn is_other_speed(name: &str) -> bool {
+    const WORDS: [&str; 9] = [
+        "average",
+        "avg",
+        "mean",
+        "target",
+        "cruise",
+        "reference",
+        "ref",
+        "moving",
+        "setpoint",
+    ];
+    crate::channel::bare(name)
+        .split('_')
+        .any(|word| WORDS.contains(&word))
 }
 
 impl Chosen {

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 
 use super::choose::{Chosen, Reading, Source};
 use super::sheet::{Met, Sheet, is_missing, number};
-use super::stamp::{DAY_S, Form};
 use crate::channel::is_identity;
 
 /// Most values of a column that tells cars or drives apart.
 const MAX_VALUES: usize = 200;
+/// Most lines of a footer.
+const MAX_FOOTER: usize = 20;
 /// Most bad lines that are repeated.
 const MAX_SHOWN: usize = 3;
 
@@ -32,18 +33,14 @@ pub(super) struct Filled {
     pub others: usize,
     /// Values of columns that tell cars or drives apart, with the number of rows of each.
     pub identities: Vec<(usize, Vec<(String, usize)>)>,
-    /// Columns of clocks: the last stamp of each, and how often it passed midnight.
-    clocks: Vec<(usize, f64, usize)>,
+    /// Columns of clocks: the last stamp of each, and the seconds after which it began again.
+    clocks: Vec<(usize, f64, f64)>,
 }
 
 impl Filled {
-    /// Number of times that a clock passed midnight.
-    pub(super) fn midnights(&self) -> usize {
-        self.clocks
-            .iter()
-            .map(|(_, _, midnights)| *midnights)
-            .max()
-            .unwrap_or(0)
+    /// True if a clock began again, as over midnight.
+    pub(super) fn begins_again(&self) -> bool {
+        self.clocks.iter().any(|(_, _, shift_s)| *shift_s > 0.0)
     }
 
     pub(super) fn of(sheet: &Sheet<'_>, chosen: &Chosen) -> Filled {
@@ -100,30 +97,38 @@ impl Filled {
                     },
                 };
             }
-            for (column, values) in &mut identities {
-                if values.len() < MAX_VALUES && !is_missing(cell(*column)) {
-                    *values.entry(cell(*column).to_owned()).or_default() += 1;
-                }
-            }
             if pending_count > 0 {
                 filled.others += pending_count;
                 let room = MAX_SHOWN.saturating_sub(filled.other.len());
                 filled.other.extend(pending.drain(..).take(room));
                 pending_count = 0;
             }
-            let is_missing = row[..times].iter().all(|value| value.is_nan())
+            let has_none = row[..times].iter().all(|value| value.is_nan())
                 || row[times..needed].iter().all(|value| value.is_nan());
-            if is_missing {
+            if needed > 0 && has_none {
                 let by_choice = sources.iter().any(|source| source.only.is_some());
                 filled.empty += usize::from(!by_choice);
                 return;
+            }
+            // In a table of names and values the other rows have numbers of their own.
+            for (column, values) in &mut identities {
+                if values.len() < MAX_VALUES && !is_missing(cell(*column)) {
+                    *values.entry(cell(*column).to_owned()).or_default() += 1;
+                }
             }
             for (values, value) in filled.values.iter_mut().zip(&row) {
                 values.push(*value);
             }
             filled.lines.push(u32::try_from(line).unwrap_or(u32::MAX));
         });
-        filled.footer = pending_count;
+        // A footer has some lines; more of them are rows that are not understood.
+        match pending_count > MAX_FOOTER {
+            true => {
+                filled.others += pending_count;
+                filled.other.append(&mut pending);
+            }
+            false => filled.footer = pending_count,
+        }
         filled.identities = identities
             .into_iter()
             // A column with a value of its own in most rows numbers the rows.
@@ -152,22 +157,18 @@ impl Filled {
             }
             Reading::Stamp(form) => {
                 let seconds = form.seconds(cell)?;
-                if form != Form::Clock {
-                    return Some(seconds);
-                }
                 let known = self
                     .clocks
                     .iter()
                     .position(|(column, _, _)| *column == source.column);
                 let known = known.unwrap_or_else(|| {
-                    self.clocks.push((source.column, seconds, 0));
+                    self.clocks.push((source.column, seconds, 0.0));
                     self.clocks.len() - 1
                 });
-                let (_, before, midnights) = &mut self.clocks[known];
-                // A clock that falls by more than half a day has passed midnight.
-                *midnights += usize::from(seconds < *before - 0.5 * DAY_S);
+                let (_, before, shift_s) = &mut self.clocks[known];
+                *shift_s += form.began_again_s(*before, seconds);
                 *before = seconds;
-                Some(seconds + DAY_S * *midnights as f64)
+                Some(seconds + *shift_s)
             }
             Reading::Word => {
                 let known = self.words.iter().position(|word| word == cell);
@@ -180,8 +181,12 @@ impl Filled {
     }
 }
 
-/// Columns by whose values the time rises, where it does not over all rows: cars or drives one among the other.
-pub(super) fn telling(sheet: &Sheet<'_>, time: &Source) -> Option<(usize, Vec<(String, usize)>)> {
+/// Columns by whose values the time rises, where it does not over all rows: cars or drives one among the other. `is_strict`: each stamp once.
+pub(super) fn telling(
+    sheet: &Sheet<'_>,
+    time: &Source,
+    is_strict: bool,
+) -> Option<(usize, Vec<(String, usize)>)> {
     let mut columns: Vec<Option<HashMap<String, (f64, usize)>>> =
         vec![Some(HashMap::new()); sheet.width];
     columns[time.column] = None;
@@ -206,7 +211,7 @@ pub(super) fn telling(sheet: &Sheet<'_>, time: &Source) -> Option<(usize, Vec<(S
             let (last, rows) = known
                 .entry(cell.to_owned())
                 .or_insert((f64::NEG_INFINITY, 0));
-            if at < *last {
+            if at < *last || is_strict && at <= *last {
                 *values = None;
                 continue;
             }

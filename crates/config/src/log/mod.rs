@@ -33,14 +33,18 @@ mod sheet;
 mod slopes;
 mod smooth;
 mod stamp;
+#[cfg(test)]
+mod tests;
 mod text;
 
-pub(crate) use doubts::{Likeness, motions};
+pub(crate) use doubts::{Likeness, motions, steep};
 pub(crate) use repair::{Treated, treat};
 pub(crate) use rows::are_strange;
 pub(crate) use samples::Samples;
 pub use smooth::Resolution;
 pub(crate) use smooth::median;
+
+use std::borrow::Cow;
 
 use crate::channel::Quantity;
 use crate::csv::Columns;
@@ -124,6 +128,15 @@ struct Reader<'s, 't> {
 /// Likeness of a recording, with its resolution in m/s, to known drives.
 pub(crate) type Known = fn(&Samples, f64) -> Likeness;
 
+/// Text of a table in the encoding that it is in: UTF-8, UTF-16 or Windows-1252. `frame` is the call that takes a frame of a file that is no text.
+///
+/// # Errors
+/// No text, a line that is too long, an empty file.
+pub fn table_text<'b>(file: &str, bytes: &'b [u8], frame: &str) -> Result<Cow<'b, str>, Problem> {
+    let text = text::decode(bytes, frame).map_err(|problem| problem.in_file(file))?;
+    Ok(text.text)
+}
+
 /// Reads a log.
 pub(crate) fn read(
     file: &str,
@@ -132,10 +145,11 @@ pub(crate) fn read(
     likeness: Known,
 ) -> Result<Log, Refused> {
     let in_file = |problem: Problem| problem.in_file(file);
-    let text = text::decode(bytes).map_err(|problem| Refused {
-        problems: in_file(problem).into(),
-        is_known: true,
-    })?;
+    let text =
+        text::decode(bytes, "cvtcycle.Cycle.from_frame(frame)").map_err(|problem| Refused {
+            problems: in_file(problem).into(),
+            is_known: true,
+        })?;
     let sheet = Sheet::find(&text.text).ok_or_else(|| {
         let problem = Problem::syntax(
             "no table was found in the file: no sign parts its lines into as many columns",
@@ -189,8 +203,8 @@ impl Reader<'_, '_> {
             chosen.times.len() + chosen.speeds.len(),
             &mut repairs,
         )?;
-        if filled.midnights() > 0 {
-            read_as.push("over midnight".to_owned());
+        if filled.begins_again() {
+            read_as.push("over midnight or the full hour".to_owned());
         }
         self.order(
             &mut samples,
@@ -236,6 +250,8 @@ impl Reader<'_, '_> {
             &treated.samples,
             &mut repairs,
         )?;
+        let doubt = grade.as_ref().and_then(|own| steep(own.iter().copied()));
+        treated.doubts.extend(doubt);
         let off = values(Quantity::EngineOff)
             .map(|own| held(own).iter().map(|flag| *flag > 0.5).collect());
         let engine_off: Option<Vec<bool>> = off.or_else(|| {

@@ -1,13 +1,16 @@
 //! The columns that mend a refusal, as a text for `--columns` that works.
 
 use super::choose::{Chosen, Reading, Source};
-use super::sheet::{Sheet, is_missing, number};
+use super::sheet::{Met, Sheet, is_missing, number};
 use super::stamp::Form;
 use crate::channel::Quantity;
 use crate::readable;
 
 /// Accelerations of a drive on a road, m/s2: the largest is between these.
 const PLAUSIBLE_M_S2: [f64; 2] = [0.5, 6.0];
+
+/// Cars of normal drivers gain more at times, m/s2: of the shipped cycles all but two.
+const SLOW_M_S2: f64 = 0.9;
 
 /// An entry, in double quotes where it has a comma or quotes.
 fn entry(text: &str) -> String {
@@ -103,6 +106,7 @@ fn usual(quantity: Quantity) -> Option<&'static str> {
 fn in_order(time: &Source, speed: &Source) -> String {
     let unit = |source: &Source| match source.reading {
         Reading::Number(unit) => unit.name,
+        Reading::Stamp(form @ Form::Figures) => form.name(),
         _ => "s",
     };
     let mut both = [
@@ -139,6 +143,8 @@ pub(super) fn time_unit(stamps: &[f64]) -> &'static str {
         .filter(|step| *step > 0.0);
     let step = super::smooth::median(steps.collect()).unwrap_or(1.0);
     match step {
+        // Days since 1900, as workbooks write a date.
+        step if step < 0.5 / 1000.0 && stamps.first().is_some_and(|first| *first > 20_000.0) => "d",
         step if step < 0.5 / 1000.0 => "h",
         // A second is 1/60 min; steps of 0.01, 0.02 and 0.05 are those of seconds.
         step if (step * 60.0 - 1.0).abs() < 0.03 => "min",
@@ -165,7 +171,7 @@ fn largest_gain(pairs: &[(f64, f64)]) -> f64 {
 }
 
 /// Unit of speeds by what a car can do, the first that is plausible; and the acceleration in each, in words.
-fn speed_unit(pairs: &[(f64, f64)]) -> (&'static str, String) {
+fn speed_unit(pairs: &[(f64, f64)], is_of_satellites: bool) -> (&'static str, String) {
     let top = pairs
         .iter()
         .fold(0.0_f64, |top, (_, speed)| top.max(*speed));
@@ -175,12 +181,18 @@ fn speed_unit(pairs: &[(f64, f64)]) -> (&'static str, String) {
         let [low, high] = PLAUSIBLE_M_S2;
         (low..=high).contains(&(gain * factor)) && top * factor < 70.0
     };
-    let found = units.iter().find(|(_, factor)| is_plausible(*factor));
+    // Receivers and phones have SI; and a car that never gains a quarter of what tyres hold is likelier one whose numbers are in m/s.
+    let is_si =
+        is_plausible(1.0) && (is_of_satellites || gain / 3.6 < SLOW_M_S2 && gain >= SLOW_M_S2);
+    let found = match is_si {
+        true => Some(&units[2]),
+        false => units.iter().find(|(_, factor)| is_plausible(*factor)),
+    };
     let words =
         units.map(|(name, factor)| format!("{} m/s2 in {name}", readable(gain * factor, 1)));
     let hint = match gain > 0.0 {
         true => format!(
-            "the largest gain in the first rows would be {}",
+            "the largest gain over a second would be {}",
             words.join(", ")
         ),
         false => String::new(),
@@ -193,6 +205,70 @@ fn is_like_time(name: &str) -> bool {
     let bare = crate::channel::bare(name);
     bare.split('_')
         .any(|word| word.len() > 2 && strsim::levenshtein(word, "time") == 1)
+}
+
+/// True if a column counts rows and is no time.
+fn counts_rows(sheet: &Sheet<'_>, column: usize) -> bool {
+    const WORDS: [&str; 12] = [
+        "frame", "frames", "index", "idx", "sample", "samples", "row", "rows", "count", "counter",
+        "nr", "no",
+    ];
+    let name = sheet.names.get(column).map_or("", String::as_str);
+    crate::channel::bare(name)
+        .split('_')
+        .any(|word| WORDS.contains(&word))
+}
+
+/// True if the name of a column says that it is something else than a speed: another unit in brackets, a distance, an acceleration.
+fn is_no_speed(sheet: &Sheet<'_>, column: usize) -> bool {
+    const WORDS: [&str; 12] = [
+        "distance",
+        "dist",
+        "odometer",
+        "accel",
+        "acceleration",
+        "acc",
+        "ax",
+        "rpm",
+        "pedal",
+        "torque",
+        "power",
+        "temp",
+    ];
+    let name = sheet.names.get(column).map_or("", String::as_str);
+    let has_unit =
+        name.ends_with([']', ')']) || sheet.units.get(column).is_some_and(|unit| !unit.is_empty());
+    let is_word = crate::channel::bare(name)
+        .split('_')
+        .any(|word| WORDS.contains(&word));
+    is_word || has_unit && sheet.stated_unit(Quantity::Speed, column).is_none()
+}
+
+/// Stamps and speeds of all rows, in the units of the file and seconds.
+fn pairs(
+    sheet: &Sheet<'_>,
+    time: &Source,
+    column: usize,
+    only: Option<&(usize, String)>,
+) -> Vec<(f64, f64)> {
+    /// Rows from which a unit is guessed.
+    const ROWS: usize = 100_000;
+    let at = |cell: &str| match time.reading {
+        Reading::Stamp(form) => form.seconds(cell),
+        Reading::Number(unit) => number(cell, sheet.decimal_comma).map(|stamp| unit.si(stamp)),
+        Reading::Word => None,
+    };
+    let mut pairs = Vec::new();
+    sheet.lines(|_, text, met| {
+        let Met::Row(fields) = met else { return };
+        let cell = |column: usize| Sheet::text_of(text, fields[column]);
+        if pairs.len() >= ROWS || only.is_some_and(|(column, word)| cell(*column) != word) {
+            return;
+        }
+        let pair = at(cell(time.column)).zip(number(cell(column), sheet.decimal_comma));
+        pairs.extend(pair);
+    });
+    pairs
 }
 
 /// Proposed columns, and a hint about the unit of the speed.
@@ -219,7 +295,8 @@ fn time_columns(
         .map(|(_, column)| *column)
         .next();
     // A port counts many times: of those that are named the one that rises is meant.
-    let all = || (0..sheet.width).filter(|column| Some(*column) != speed_column && rises(column));
+    let is_free = |column: &usize| Some(*column) != speed_column && !counts_rows(sheet, *column);
+    let all = || (0..sheet.width).filter(is_free).filter(rises);
     let is_named = |column: &usize| chosen.no_unit.contains(&(Quantity::Time, *column));
     let changes = |column: &usize| {
         let values = raw(sheet, *column);
@@ -256,13 +333,7 @@ pub(super) fn guess(
             .find(|(own, _)| *own == quantity)
             .map(|(_, column)| *column)
     };
-    let stamps = |column: &usize| {
-        sheet
-            .sample
-            .first()
-            .and_then(|row| row.get(*column))
-            .and_then(|cell| Form::of(cell))
-    };
+    let stamps = |column: &usize| sheet.form(*column);
     let speed_column = chosen
         .speeds
         .first()
@@ -274,7 +345,7 @@ pub(super) fn guess(
         (None, named) => {
             let stamped = || (0..sheet.width).find(|column| stamps(column).is_some());
             let column = named.or_else(stamped).or(rising)?;
-            let reading = match stamps(&column).filter(|_| !is_number(&column)) {
+            let reading = match stamps(&column) {
                 Some(form) => Reading::Stamp(form),
                 None => Reading::Number(Quantity::Time.unit(time_unit(&raw(sheet, column)))?),
             };
@@ -289,36 +360,35 @@ pub(super) fn guess(
     let speed = match chosen.speeds.first() {
         Some(speed) => speed.clone(),
         None => {
-            // Without a name that means a speed, only a table of two columns leaves no choice.
+            // Without a name that means a speed, only a table of two columns leaves no choice, or the speed of a wheel.
             let other = || {
                 (0..sheet.width)
                     .find(|column| *column != time.column && is_number(column))
                     .filter(|_| sheet.width == 2 || sheet.names.is_empty())
+                    .filter(|column| !is_no_speed(sheet, *column))
             };
-            let column = named(Quantity::Speed).or_else(other)?;
+            let wheel = || {
+                (0..sheet.names.len()).find(|column| {
+                    let name = crate::channel::bare(&sheet.names[*column]);
+                    name.contains("wheel")
+                        && name.contains("speed")
+                        && is_number(column)
+                        && sheet.stated_unit(Quantity::Speed, *column).is_some()
+                })
+            };
+            let column = named(Quantity::Speed).or_else(other).or_else(wheel)?;
             let only = chosen.only_no_unit.clone();
-            let is_row = |row: &&Vec<&str>| {
-                only.as_ref()
-                    .is_none_or(|(column, word)| row.get(*column) == Some(&word.as_str()))
+            let pairs = pairs(sheet, &time, column, only.as_ref());
+            let is_position = |name: &String| {
+                let name = crate::channel::bare(name);
+                ["lat", "latitude"]
+                    .iter()
+                    .any(|word| name.split('_').any(|own| own == *word))
             };
-            let factor = match time.reading {
-                Reading::Number(unit) => unit.si(1.0),
-                _ => 1.0,
-            };
-            let at = |cell: &str| match time.reading {
-                Reading::Stamp(form) => form.seconds(cell),
-                _ => number(cell, sheet.decimal_comma).map(|stamp| stamp * factor),
-            };
-            let pair = |row: &Vec<&str>| {
-                at(row.get(time.column)?).zip(number(row.get(column)?, sheet.decimal_comma))
-            };
-            let pairs: Vec<(f64, f64)> = sheet
-                .sample
-                .iter()
-                .filter(is_row)
-                .filter_map(pair)
-                .collect();
-            let (unit, words) = speed_unit(&pairs);
+            let of_satellites = sheet.names.iter().any(is_position);
+            let (guessed, words) = speed_unit(&pairs, of_satellites);
+            let stated = sheet.stated_unit(Quantity::Speed, column);
+            let unit = stated.map_or(guessed, |unit| unit.name);
             hint = words;
             Source {
                 quantity: Quantity::Speed,

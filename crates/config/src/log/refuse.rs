@@ -37,10 +37,11 @@ impl Reader<'_, '_> {
             };
             problems.add(problem.in_file(self.file).key(quantity.name()));
         }
+        let rows = chosen.filters.iter().chain(&chosen.only_no_unit).cloned();
         let filled = Filled::of(
             self.sheet,
             &Chosen {
-                filters: chosen.filters.clone(),
+                filters: rows.collect(),
                 ..Chosen::default()
             },
         );

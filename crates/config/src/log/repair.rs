@@ -22,6 +22,15 @@ const CUTS: usize = 5;
 const CUTS_PER_ROW: usize = 200;
 /// Acceleration with which a cut is bridged, as in a cycle over distance (CY-1), m/s2: up and down.
 const BRIDGE_M_S2: [f64; 2] = [1.0, 1.5];
+/// A gap at rest from which on two drives are likelier than one, s.
+const REST_S: f64 = 120.0;
+/// Step from which on a drive is not known by its rows, s.
+const SLOW_RATE_S: f64 = 2.5;
+/// Half width by which fuel and difference are open besides what the strength of the smoothing leaves: per cent, and points. Twice the rms error of UDDS, HWFET,
+/// US06, NYCC and Artemis urban, rounded to whole km/h and mph at 10, 4, 2 and 1 Hz or with 0.05 m/s of noise, and smoothed.
+const LEFT: [f64; 2] = [1.0, 0.5];
+/// Error of a speed up to which this holds, m/s: that of whole km/h.
+const FINE_M_S: f64 = 0.1;
 
 /// A repair that was made.
 pub(super) fn made(name: &'static str, count: usize, what: String) -> Repair {
@@ -43,6 +52,8 @@ pub(crate) struct Treated {
     pub doubts: Vec<String>,
     /// True where most steps are alike.
     pub is_recording: bool,
+    /// Half width by which fuel (per cent) and difference (points) are open beyond the bounds (LG-6); none where nothing is.
+    pub left: Option<[f64; 2]>,
 }
 
 fn kmh(speed_m_s: f64) -> String {
@@ -77,17 +88,33 @@ pub(crate) fn treat(
         doubts: Vec::new(),
         bounds: Vec::new(),
     };
+    if !is_exact && raster.is_some() {
+        own.spikes();
+    }
     own.limits();
     let mut resolution = None;
+    // The rows between those of a shipped cycle may be held, too.
+    if raster.is_some() {
+        own.held();
+    }
     if !is_exact {
         if raster.is_some() {
-            own.spikes();
             resolution = Resolution::of(&own.samples.time_s, &own.samples.speed_m_s);
         }
         own.gaps(raster, resolution);
         if let Some(coarse) = resolution.filter(Resolution::is_coarse) {
             own.smooth(coarse);
         }
+    }
+    if own.samples.first_m_s.len() == own.samples.time_s.len() {
+        own.bounds.push(own.first(resolution));
+    }
+    let left = left(raster, resolution, own.bounds.is_empty());
+    if let Some(step) = raster.filter(|step| *step > SLOW_RATE_S && !is_exact) {
+        own.doubts.push(format!(
+            "the rows are {} s apart: accelerations between them are not in the log",
+            readable(step, 1)
+        ));
     }
     match own.problems.is_empty() {
         true => Ok(Treated {
@@ -97,12 +124,69 @@ pub(crate) fn treat(
             repairs: own.repairs,
             doubts: own.doubts,
             is_recording: raster.is_some(),
+            left,
         }),
         false => Err(own.problems),
     }
 }
 
+/// Openness beyond the bounds (LG-6): in proportion to an error above that of whole miles an hour, and to a step above a second.
+fn left(raster: Option<f64>, resolution: Option<Resolution>, is_alone: bool) -> Option<[f64; 2]> {
+    let slow = raster.filter(|step| *step >= 2.0);
+    if is_alone && slow.is_none() {
+        return None;
+    }
+    let of_error = resolution.map_or(1.0, |own| (own.error_m_s / FINE_M_S).max(1.0));
+    let [fuel, points] = slow.map_or([0.0, 0.0], |step| [step, 0.2 * step]);
+    Some([
+        (LEFT[0] * of_error).max(fuel),
+        (LEFT[1] * of_error).max(points),
+    ])
+}
+
 impl Treatment<'_> {
+    /// The first speeds of the stamps in place of their means, repaired like these.
+    fn first(&self, resolution: Option<Resolution>) -> Vec<f64> {
+        let Samples {
+            time_s,
+            speed_m_s,
+            first_m_s,
+            ..
+        } = &self.samples;
+        let coarse = resolution.filter(|own| self.wanted.smooth && own.is_coarse());
+        let first = match coarse {
+            Some(coarse) => smoothed(time_s, first_m_s, coarse.error_m_s, 1.0),
+            None => first_m_s.clone(),
+        };
+        // Where a mean was repaired the repaired one holds.
+        let near = |(own, mean): (f64, &f64)| match (own - mean).abs() < JUMP_M_S2 {
+            true if !is_standstill(*mean) => own.max(0.0),
+            _ => *mean,
+        };
+        first.into_iter().zip(speed_m_s).map(near).collect()
+    }
+
+    /// Values that are repeated until the next one is measured.
+    fn held(&mut self) {
+        let mut mended = self.samples.clone();
+        let Some((rows, period_s)) = mended.follow() else {
+            return;
+        };
+        let text = format!(
+            "{} repeat a value that is measured each {} s",
+            number_of(rows, "row"),
+            readable(period_s, 2)
+        );
+        match self.wanted.held {
+            true => {
+                self.samples = mended;
+                let what = format!("{text}, replaced by the line between the values");
+                self.repairs.push(made("held", rows, what));
+            }
+            false => self.doubts.push(format!("{text}: the speed has steps")),
+        }
+    }
+
     /// A problem of a row.
     fn problem(&mut self, line: u32, problem: Problem) {
         let Problem { place, .. } = (self.place)(line);
@@ -190,6 +274,7 @@ impl Treatment<'_> {
         let problem = Problem::out_of_range(text)
             .allowed("speeds that a car can drive")
             .hint("let the repair `spikes` replace them")
+            .repair("spikes")
             .settings(&[Setting::Repair]);
         self.problem(line, problem);
     }
@@ -229,8 +314,29 @@ impl Treatment<'_> {
         self.repairs.push(made("smooth", count, what));
     }
 
+    /// Gaps at rest that are longer than a stop: doubted, or taken out with the other gaps.
+    fn rests(&mut self, raster: f64) -> Vec<usize> {
+        let samples = &self.samples;
+        let is_long = |k: &usize| {
+            samples.step(*k) > REST_S.max(GAP.1 * raster)
+                && samples.speed_m_s[*k].max(samples.speed_m_s[k + 1]) <= MOVING_M_S
+        };
+        let rests: Vec<usize> = (0..samples.time_s.len() - 1).filter(is_long).collect();
+        let seconds: f64 = rests.iter().map(|k| samples.step(*k)).sum();
+        if let Some(first) = rests.first().filter(|_| !self.wanted.cut) {
+            self.doubts.push(format!(
+                "{} at rest without rows, {} s in all, the first at {} s, with the engine at idle: are these drives of their own? --repair cut takes the time out",
+                number_of(rests.len(), "gap"),
+                readable(seconds, 0),
+                readable(samples.time_s[*first] - samples.time_s[0], 0)
+            ));
+        }
+        rests
+    }
+
     /// Gaps while the car moves, and jumps that no car drives beyond what the resolution explains: refused, or bridged.
     fn gaps(&mut self, raster: Option<f64>, resolution: Option<Resolution>) {
+        let rests = raster.map_or_else(Vec::new, |step| self.rests(step));
         let samples = &self.samples;
         let noise = resolution.map_or(0.0, |own| 3.0 * own.speed_m_s.max(2.0 * own.error_m_s));
         // Sensors of fast rasters are not as fine as their steps.
@@ -251,12 +357,17 @@ impl Treatment<'_> {
         let gaps: Vec<usize> = (0..last).filter(is_gap).collect();
         let jumps: Vec<usize> = (0..last).filter(is_jump).collect();
         if gaps.is_empty() && jumps.is_empty() {
+            if self.wanted.cut && !rests.is_empty() {
+                self.samples.bridge(&rests, raster.unwrap_or(0.0));
+                let what = format!("{} at rest taken out", number_of(rests.len(), "gap"));
+                self.repairs.push(made("cut", rests.len(), what));
+            }
             return;
         }
         let text = samples.in_words(&gaps, &jumps);
         let few = CUTS.max(samples.time_s.len() / CUTS_PER_ROW);
         if self.wanted.cut && raster.is_some() && gaps.len() + jumps.len() <= few {
-            let both: Vec<usize> = gaps.iter().chain(&jumps).copied().collect();
+            let both: Vec<usize> = gaps.iter().chain(&jumps).chain(&rests).copied().collect();
             let metres = self.samples.bridge(&both, raster.unwrap_or(0.0));
             let what = format!(
                 "{text}; bridged at 1.0 and 1.5 m/s2 over {} m",
@@ -294,6 +405,10 @@ impl Treatment<'_> {
             false => &[],
         };
         let problem = Problem::conflict(text).allowed(allowed).hint(hint);
+        let problem = match settings.is_empty() || gaps.len() + jumps.len() > few {
+            true => problem,
+            false => problem.repair("cut"),
+        };
         self.problem(line, problem.settings(settings));
     }
 }

@@ -6,13 +6,15 @@ use super::repair::{made, number_of};
 use super::samples::Samples;
 use super::{Reader, Refused, propose, smooth};
 use crate::channel::Quantity;
-use crate::{Problem, readable};
+use crate::{Problem, Setting, readable};
 use cvtcycle_model::cycle::Repair;
 
 /// Stamps above are no seconds of a drive, but milliseconds or less since 1970.
 const MAX_STAMP_S: f64 = 1e11;
 /// Steps of a recording from here on leave no drive, s.
 const MAX_STEP_S: f64 = 60.0;
+/// Stamps of several rows that are farther apart have no seconds, s.
+const COARSE_STAMP_S: f64 = 2.5;
 /// Longest drive, s.
 const MAX_DURATION_S: f64 = 1e6;
 
@@ -53,6 +55,7 @@ impl Reader<'_, '_> {
             time_s: pick(times),
             speed_m_s: pick(speeds),
             lines: rows.iter().map(|k| filled.lines[*k]).collect(),
+            first_m_s: Vec::new(),
         };
         Ok((samples, filled.values[others..].iter().map(pick).collect()))
     }
@@ -96,7 +99,16 @@ impl Reader<'_, '_> {
                 .iter_mut()
                 .for_each(|other| *other = other[range.clone()].to_vec());
         } else if let Some(first) = falls.first() {
-            if wanted.sort {
+            let is_set = samples.is_clock_set(&falls);
+            if wanted.cut && is_set {
+                let back_s = samples.run_on(&falls);
+                let text = format!(
+                    "the clock was set back {} by {} s in all: it runs on",
+                    times(falls.len()),
+                    readable(back_s, 1)
+                );
+                repairs.push(made("cut", falls.len(), text));
+            } else if wanted.sort {
                 let moved = samples.sort(others);
                 repairs.push(made(
                     "sort",
@@ -110,7 +122,7 @@ impl Reader<'_, '_> {
                 return Err(self.falls(samples, &falls, *first, chosen, leading));
             }
         }
-        self.merge(samples, others, repairs)
+        self.merge(samples, others, chosen, leading, repairs)
     }
 
     /// Makes one row of those with the same stamp, or says why that cannot be.
@@ -118,6 +130,8 @@ impl Reader<'_, '_> {
         &self,
         samples: &mut Samples,
         others: &mut [Vec<f64>],
+        chosen: &Chosen,
+        leading: (&Source, &Source),
         repairs: &mut Vec<Repair>,
     ) -> Result<(), Refused> {
         let doubled = samples
@@ -139,7 +153,38 @@ impl Reader<'_, '_> {
                 problem.hint("let the repair `stamps` make one row of them"),
             ));
         }
+        // Words by which each stamp is there once are those of several cars, also where they drive alike.
+        let cars =
+            telling(self.sheet, leading.0, true).filter(|_| 5 * doubled > samples.time_s.len());
+        let are_words = |(_, values): &(usize, Vec<(String, usize)>)| {
+            values
+                .iter()
+                .all(|(value, _)| value.parse::<f64>().is_err())
+        };
+        if let Some((column, values)) = cars.as_ref().filter(|cars| are_words(cars)) {
+            return Err(self.several(*column, values, chosen, leading));
+        }
         let before = samples.clone();
+        let distinct = samples
+            .time_s
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .filter(|step| *step > 0.0);
+        if let Some(step) = smooth::median(distinct.collect())
+            .filter(|step| *step > COARSE_STAMP_S && 2 * doubled > before.time_s.len())
+        {
+            let message = format!(
+                "{} with the stamp of the row above, and the stamps are {} s apart",
+                number_of(doubled, "row"),
+                readable(step, 1)
+            );
+            let problem = Problem::conflict(message)
+                .key("time")
+                .allowed("stamps with seconds");
+            let problem =
+                problem.hint("write the stamps with seconds, or take another column as the time");
+            return Err(Refused::known(self.problem(before.lines[1], problem)));
+        }
         match samples.merge(others) {
             Ok(_) if samples.time_s.len() < 2 => {
                 let problem = Problem::missing("all rows have the same stamp")
@@ -167,6 +212,10 @@ impl Reader<'_, '_> {
                 ));
                 Ok(())
             }
+            Err(_) if cars.is_some() => {
+                let (column, values) = cars.unwrap_or_default();
+                Err(self.several(column, &values, chosen, leading))
+            }
             Err(at) => {
                 let [a, b] = [at - 1, at].map(|k| readable(3.6 * before.speed_m_s[k], 1));
                 let message = format!(
@@ -191,14 +240,25 @@ impl Reader<'_, '_> {
         chosen: &Chosen,
         leading: (&Source, &Source),
     ) -> Refused {
-        if let Some((column, values)) = telling(self.sheet, leading.0) {
+        if let Some((column, values)) = telling(self.sheet, leading.0, false) {
             return self.several(column, &values, chosen, leading);
         }
         let line = samples.lines[first];
         let ends = falls.iter().copied().chain([samples.time_s.len()]);
         let starts = [0].into_iter().chain(falls.iter().copied());
         let lengths: Vec<usize> = starts.zip(ends).map(|(start, end)| end - start).collect();
-        let problem = match lengths.iter().all(|rows| *rows > 5) {
+        let problem = match lengths.iter().all(|rows| *rows > 5) && samples.falls_far(falls) {
+            true if samples.is_clock_set(falls) => {
+                let message = format!(
+                    "the time falls {} while the car drives on",
+                    times(falls.len())
+                );
+                Problem::conflict(message)
+                    .allowed("more than in the row above")
+                    .hint("a clock that was set: let the repair `cut` let it run on")
+                    .settings(&[Setting::Repair])
+                    .repair("cut")
+            }
             true => {
                 let longest = lengths
                     .iter()
@@ -219,9 +279,18 @@ impl Reader<'_, '_> {
             }
             false => {
                 let message = format!("the time falls {}", times(falls.len()));
-                Problem::conflict(message)
+                let problem = Problem::conflict(message)
                     .allowed("more than in the row above")
                     .hint("sort the rows, or let the repair `sort` do it")
+                    .settings(&[Setting::Repair]);
+                // A column that falls and comes back to its values is no time.
+                let mut sorted = samples.time_s.clone();
+                sorted.sort_by(f64::total_cmp);
+                let doubled = sorted.windows(2).filter(|pair| pair[1] <= pair[0]).count();
+                match 5 * doubled < sorted.len() {
+                    true => problem.repair("sort"),
+                    false => problem,
+                }
             }
         };
         Refused::known(self.problem(line, problem.key("time")))

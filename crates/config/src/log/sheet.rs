@@ -8,6 +8,8 @@ use crate::csv::{Field, split};
 
 /// Lines at the beginning in which the layout is looked for.
 const SAMPLE: usize = 400;
+/// Lines at the end that show how stamps go on.
+const TAIL: usize = 20;
 /// Rows that must follow each other to be the beginning of the rows.
 const FOLLOWING: usize = 3;
 /// Most lines between names and rows: units and second names.
@@ -64,7 +66,23 @@ impl Separator {
 
 /// A cell without a value, as instruments write it.
 pub(super) fn is_missing(cell: &str) -> bool {
-    const WORDS: [&str; 10] = [
+    const WORDS: [&str; 26] = [
+        "<na>",
+        "nat",
+        "err",
+        "error",
+        "#err",
+        "#error",
+        "#value!",
+        "#ref!",
+        "#num!",
+        "#div/0!",
+        "#name?",
+        "no_data",
+        "invalid",
+        "timeout",
+        "inf",
+        "-inf",
         "nan",
         "n/a",
         "na",
@@ -77,7 +95,7 @@ pub(super) fn is_missing(cell: &str) -> bool {
         "not available",
     ];
     cell.chars().all(|c| "-–—?*∞ ".contains(c))
-        || cell.len() <= 13 && WORDS.contains(&cell.to_lowercase().as_str())
+        || cell.len() <= 13 && !cell.is_empty() && WORDS.contains(&cell.to_lowercase().as_str())
 }
 
 /// Number of a cell.
@@ -87,6 +105,11 @@ pub(super) fn number(cell: &str, decimal_comma: bool) -> Option<f64> {
         false => cell.parse::<f64>(),
     };
     number.ok().filter(|number| number.is_finite())
+}
+
+/// A comment, of scripts of MATLAB too.
+fn is_comment(line: &str) -> bool {
+    line.trim_start().starts_with(['#', '%'])
 }
 
 fn is_value(cell: &str) -> bool {
@@ -114,6 +137,8 @@ pub(super) struct Sheet<'t> {
     pub read_as: Vec<String>,
     /// Cells of the first rows.
     pub sample: Vec<Vec<&'t str>>,
+    /// Cells of the last rows.
+    pub tail: Vec<Vec<&'t str>>,
 }
 
 /// A line as the reader meets it.
@@ -149,26 +174,48 @@ impl<'t> Sheet<'t> {
         };
         let begins = |k: &usize| {
             let next = &cells[*k..cells.len().min(*k + FOLLOWING)];
-            let is_comment = lines[*k].1.trim_start().starts_with('#');
-            !is_comment
+            !is_comment(lines[*k].1)
                 && next.iter().all(is_row)
                 && (next.len() == FOLLOWING || *k + next.len() == cells.len())
         };
         let first = (0..lines.len()).find(begins)?;
         // A line such as [Data] may stand between names and rows; a comment has no names.
-        let has_head = |k: &usize| fits(&cells[*k]) && !lines[*k].1.trim_start().starts_with('#');
+        let has_head = |k: &usize| fits(&cells[*k]) && !is_comment(lines[*k].1);
         let is_between = |k: &usize| !has_head(k);
-        let between = (0..first).rev().take_while(is_between).count();
-        let from = match between <= MAX_BETWEEN {
-            true => first - between,
-            false => first,
+        let above = |first: usize| -> Vec<usize> {
+            let between = (0..first).rev().take_while(is_between).count();
+            let from = match between <= MAX_BETWEEN {
+                true => first - between,
+                false => first,
+            };
+            let above = (0..from).rev().take_while(has_head).take(MAX_HEAD);
+            let above: Vec<usize> = above.collect();
+            above.into_iter().rev().collect()
         };
-        let above: Vec<usize> = (0..from)
-            .rev()
-            .take_while(has_head)
-            .take(MAX_HEAD)
-            .collect();
-        let above: Vec<usize> = above.into_iter().rev().collect();
+        let names_both = |k: usize| {
+            let names = cells[k].as_deref().unwrap_or_default();
+            let has = |wanted| {
+                names
+                    .iter()
+                    .any(|name| Quantity::of_name(name) == Some(wanted))
+            };
+            has(Quantity::Time) && has(Quantity::Speed)
+        };
+        // A preamble of as many columns, with numbers in it, looks like rows: the line that names a time and a speed ends it.
+        let later = || {
+            let is_head = |k: &usize| {
+                has_head(k)
+                    && names_both(*k)
+                    && !cells[*k].iter().flatten().any(|cell| is_value(cell))
+            };
+            let head = (first + 1..lines.len()).find(is_head)?;
+            (head + 1..lines.len().min(head + 2 + MAX_BETWEEN)).find(begins)
+        };
+        let first = match above(first).into_iter().any(names_both) {
+            true => first,
+            false => later().unwrap_or(first),
+        };
+        let above = above(first);
         let rows = above.iter().filter_map(|k| cells[*k].clone());
         let head = Head::of(&rows.collect::<Vec<_>>(), width);
         let mut read_as = Vec::new();
@@ -189,17 +236,21 @@ impl<'t> Sheet<'t> {
             });
         }
         read_as.extend(head.words());
+        let script = named_by_script(&lines[..first], width);
+        let names = script.unwrap_or(head.names);
+        let tail = last_rows(text, separator, width);
         Some(Sheet {
             text,
             separator,
             decimal_comma,
-            names: head.names,
+            names,
             units: head.units,
             width,
             first: lines[first].0,
             head: above.iter().map(|k| lines[*k].1).collect(),
             read_as,
             sample,
+            tail,
         })
     }
 
@@ -208,7 +259,7 @@ impl<'t> Sheet<'t> {
         let mut fields = Vec::new();
         for (number, line) in self.text.lines().enumerate().skip(self.first) {
             let trimmed = line.trim_start();
-            if trimmed.is_empty() || trimmed.starts_with('#') {
+            if trimmed.is_empty() || is_comment(line) {
                 continue;
             }
             let met = if self.head.contains(&line) {
@@ -244,6 +295,19 @@ impl<'t> Sheet<'t> {
     }
 }
 
+/// Cells of the last rows.
+fn last_rows(text: &str, separator: Separator, width: usize) -> Vec<Vec<&str>> {
+    let lines = text.lines().rev().filter(|line| !line.trim().is_empty());
+    let mut rows: Vec<Vec<&str>> = lines
+        .take(TAIL)
+        .filter_map(|line| separator.cells(line))
+        .filter(|cells| trimmed(cells, width).len() == width)
+        .map(|cells| trimmed(&cells, width).to_vec())
+        .collect();
+    rows.reverse();
+    rows
+}
+
 /// Cells without an empty one behind the last separator.
 fn trimmed<'c, 't>(cells: &'c [&'t str], width: usize) -> &'c [&'t str] {
     match cells.last() {
@@ -258,7 +322,7 @@ fn separator(lines: &[(usize, &str)]) -> Option<(Separator, &'static str, usize)
     for (separator, word) in SEPARATORS {
         let cells: Vec<Vec<&str>> = lines
             .iter()
-            .filter(|(_, line)| !line.trim_start().starts_with('#'))
+            .filter(|(_, line)| !is_comment(line))
             .filter_map(|(_, line)| separator.cells(line))
             .collect();
         // A separator behind the last cell makes an empty one in every row.
@@ -274,10 +338,12 @@ fn separator(lines: &[(usize, &str)]) -> Option<(Separator, &'static str, usize)
         else {
             continue;
         };
-        let names = cells
-            .iter()
-            .find(|cells| !cells.iter().any(|cell| is_value(cell)) && cells.len() + 1 >= count);
-        let has_name = names.is_some_and(|names| names.len() == count && names.last() != Some(&""));
+        // A line of names as long as the rows says that their last cell is one of theirs.
+        let has_name = cells.iter().any(|cells| {
+            cells.len() == count
+                && cells.last() != Some(&"")
+                && !cells.iter().any(|cell| is_value(cell))
+        });
         let width = count - usize::from(trailing > 0 && 10 * trailing >= 9 * rows && !has_name);
         if !(2..=MAX_COLUMNS).contains(&width) {
             continue;
@@ -302,9 +368,7 @@ fn separator(lines: &[(usize, &str)]) -> Option<(Separator, &'static str, usize)
 
 /// True where numbers have decimal commas; none where they can be read in two ways.
 fn decimal_comma(separator: Separator, sample: &[Vec<&str>]) -> Option<bool> {
-    if separator == Separator::Sign(',') {
-        return Some(false);
-    }
+    // Between commas only a cell in quotes has one.
     let commas = sample
         .iter()
         .flatten()
@@ -319,7 +383,22 @@ fn decimal_comma(separator: Separator, sample: &[Vec<&str>]) -> Option<bool> {
         let digits = whole.trim_start_matches(['-', '+']);
         rest.len() != 3 || digits.len() > 3 || digits.starts_with('0')
     };
-    commas.any(is_sure).then_some(true)
+    match (commas.any(is_sure), separator) {
+        (true, _) => Some(true),
+        (false, Separator::Sign(',')) => Some(false),
+        (false, _) => None,
+    }
+}
+
+/// Names of the columns of a matrix of time and speed in a script, by the name of the matrix: `cyc_mph = [`.
+fn named_by_script(above: &[(usize, &str)], width: usize) -> Option<Vec<String>> {
+    let (_, line) = above.last().filter(|_| width == 2)?;
+    let (name, rest) = line.split_once('=')?;
+    let name = name.trim();
+    let is_word = name.chars().all(|c| c.is_alphanumeric() || c == '_');
+    (is_word && rest.trim().trim_end_matches('.').trim() == "[").then_some(())?;
+    unit_in(Quantity::Speed, name)?;
+    Some(vec!["cyc_time_s".to_owned(), name.to_owned()])
 }
 
 /// The lines between the preamble and the rows.

@@ -19,8 +19,13 @@ const CHANGE: f64 = 0.25;
 const MAX_ERROR_M_S2: f64 = 0.1;
 /// Values of a table with a coarser resolution are corners, and no recording.
 const MAX_RESOLUTION_M_S: f64 = 0.6;
-/// Longest step at which noise and motion are distinguished, s.
+/// Longest step at which the motion of LG-3 is less than noise, s, ...
 const MAX_NOISE_STEP_S: f64 = 0.5;
+/// ... and up to which noise is only what is beyond the liveliest motion: the third differences of shipped cycles at 1 Hz are up to 0.43 (m/s)2 (Artemis urban),
+/// and a noise above half as much again is taken for one.
+const MAX_LIVELY_STEP_S: f64 = 1.2;
+const LIVELY: f64 = 0.45;
+const BEYOND: f64 = 1.6;
 /// Most values that are sorted.
 const SAMPLE: usize = 200_000;
 /// Variance of a speed at standstill, of that of another: a car at rest is at rest.
@@ -74,7 +79,7 @@ impl Resolution {
             return None;
         }
         let mut variance = speed * speed / 12.0;
-        if step_s <= MAX_NOISE_STEP_S {
+        if step_s <= MAX_LIVELY_STEP_S {
             let thirds = speed_m_s.windows(4).zip(time_s.windows(4)).take(SAMPLE);
             let even = thirds.filter(|(v, t)| {
                 !v.iter().any(|v| is_standstill(*v)) && t[3] - t[0] < 4.5 * step_s
@@ -83,7 +88,15 @@ impl Resolution {
                 .map(|(v, _)| (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]).abs())
                 .collect();
             let m = median(thirds).unwrap_or(0.0) / 0.6745;
-            variance = variance.max((m * m - CHANGE * step_s.powi(3)) / 20.0);
+            let motion = match step_s <= MAX_NOISE_STEP_S {
+                true => CHANGE,
+                false => LIVELY,
+            } * step_s.powi(3);
+            // Rounding has its part in them.
+            let beyond = m * m - motion - 20.0 * variance;
+            if step_s <= MAX_NOISE_STEP_S || beyond > (BEYOND - 1.0) * motion {
+                variance = variance.max((m * m - motion) / 20.0);
+            }
         }
         Some(Resolution {
             step_s,

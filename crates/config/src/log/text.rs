@@ -16,22 +16,30 @@ const BINARY: [(&[u8], &str); 6] = [
 ];
 
 /// Text of a file.
-pub(super) struct Text<'b> {
+pub(crate) struct Text<'b> {
     pub text: Cow<'b, str>,
     /// Name of an encoding other than UTF-8.
     pub encoding: Option<&'static str>,
 }
 
 /// Decodes UTF-8, UTF-16 with or without byte order mark, and else Windows-1252, which holds Latin-1 and every byte.
-pub(super) fn decode(bytes: &[u8]) -> Result<Text<'_>, Problem> {
+///
+/// # Errors
+/// Files that are no text, with `frame` as the call that takes a frame of them; no text at all.
+pub(crate) fn decode<'b>(bytes: &'b [u8], frame: &str) -> Result<Text<'b>, Problem> {
     if let Some((_, what)) = BINARY.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(
             Problem::syntax(format!("this is {what}, and no table in text"))
                 .allowed("a table in text, such as CSV")
-                .hint("read it with Python and give its frame: cvtcycle.Cycle.from_frame(frame)"),
+                .hint(format!("read it with Python and give its frame: {frame}")),
         );
     }
     let (text, encoding) = decoded(bytes);
+    // A recorder that lost its power leaves zeros at the end.
+    let text = match text.ends_with('\0') {
+        true => Cow::Owned(text.trim_end_matches('\0').to_owned()),
+        false => text,
+    };
     if let Some(at) = text.find('\0') {
         let line = text[..at].matches('\n').count() + 1;
         return Err(Problem::syntax(format!(

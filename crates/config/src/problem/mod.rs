@@ -86,8 +86,12 @@ pub enum Setting {
 /// A choice with which an input is read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Proposal {
-    /// Columns as their setting takes them.
+    /// Columns as their setting takes them; empty where they stay.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub columns: String,
+    /// Repairs as their setting takes them, besides those that are made; empty where they stay.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub repair: String,
 }
 
 /// One problem of an input.
@@ -193,7 +197,8 @@ impl Problem {
     #[must_use]
     pub fn columns(self, columns: impl Into<String>) -> Self {
         let columns: String = columns.into();
-        let proposal = (!columns.is_empty()).then(|| Box::new(Proposal { columns }));
+        let repair = String::new();
+        let proposal = (!columns.is_empty()).then(|| Box::new(Proposal { columns, repair }));
         Problem { proposal, ..self }
     }
 
@@ -201,6 +206,15 @@ impl Problem {
     #[must_use]
     pub fn proposed(&self) -> &str {
         self.proposal.as_ref().map_or("", |own| &own.columns)
+    }
+
+    /// With the repair with which the log is read.
+    #[must_use]
+    pub fn repair(self, repair: &str) -> Self {
+        let columns = self.proposed().to_owned();
+        let repair = repair.to_owned();
+        let proposal = Some(Box::new(Proposal { columns, repair }));
+        Problem { proposal, ..self }
     }
 
     /// With known names that may have been meant.

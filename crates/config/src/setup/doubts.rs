@@ -46,6 +46,8 @@ const DIESEL: (f64, f64) = (110.0, 4500.0);
 const DIESEL_FUEL_KG_M3: f64 = 800.0;
 /// Full load over the load up to which a Willans line was fitted, from which it is doubted.
 const BEYOND_FIT: f64 = 1.25;
+/// Mean effective pressure that no engine reaches without a charger, bar.
+const CHARGED_BAR: f64 = 15.0;
 /// Idle speeds of warm engines, rpm.
 const IDLE_RPM: RangeInclusive<f64> = 500.0..=1100.0;
 /// Dynamic radii of wheels, mm.
@@ -231,13 +233,17 @@ fn range_doubt(setup: &Setup) -> Option<String> {
     let (bar, limit, at_rpm) = points
         .map(over)
         .max_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))?;
-    let model = match &engine.fuel {
-        FuelModel::Willans(_) => "Willans line",
-        FuelModel::Map(_) => "map of fuel",
+    let (model, made_bar) = match &engine.fuel {
+        FuelModel::Willans(_) => ("Willans line", engine.fitted_pa.map_or(0.0, |pa| pa / 1e5)),
+        FuelModel::Map(_) => ("map of fuel", limit),
+    };
+    let advice = match made_bar > CHARGED_BAR {
+        true => "it is one of charged engines: check displacement, power, torque and their speeds",
+        false => "a turbo or diesel engine has its own (`cvtcycle list classes`)",
     };
     (bar > limit).then(|| {
         format!(
-            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`)"
+            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: {advice}"
         )
     })
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cvtcycle_config::ProblemKind::{Conflict, OutOfRange};
 use cvtcycle_model::cycle::{GearColumns, GearCommand, Interval, Trace};
-use cvtcycle_model::drive::{Drive, Row, State};
+use cvtcycle_model::drive::{Drive, Row, State, own_trace};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 
@@ -106,6 +106,7 @@ impl Unit {
         };
         let gears = GearColumns::new(None, None, command.map(|command| vec![command]));
         let trace = Trace::with_gears(vec![interval], gears);
+        let trace = own_trace(&self.car, &trace);
         let mut drive = Drive::along(&self.car, &trace, driven.state);
         let (mut row, mut fuel_kg, mut distance_m) = (Row::default(), 0.0, 0.0);
         let (mut flags, mut fuel_by_step) = (Flags::default(), driven.fuel_kg);

@@ -8,7 +8,9 @@ pub mod gtr15;
 mod trace;
 
 pub use gears::{GearColumns, GearCommand};
-pub use trace::{Interval, Motion, STANDSTILL_M_S, Step, Trace, is_standstill, mean_powers};
+pub use trace::{
+    Interval, Motion, STANDSTILL_M_S, Step, TOLERANCE_M_S, Trace, is_standstill, mean_powers,
+};
 
 /// How the fuel of the phases is put together to the cycle's one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +62,8 @@ pub struct Recording {
     pub doubts: Vec<String>,
     /// Traces with less and more smoothing, which the recording does not rule out.
     pub bounds: Vec<Trace>,
+    /// Half width by which fuel (per cent) and difference (points) are open beyond these (LG-6); none where nothing is.
+    pub left: Option<[f64; 2]>,
     /// True where rows come at a rate, so that it is a log and no schedule.
     pub is_log: bool,
     /// Other quantities of the car that were recorded with its speed.

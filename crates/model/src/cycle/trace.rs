@@ -2,17 +2,24 @@
 
 use super::gears::{GearColumns, GearCommand};
 use crate::math::{Real, exp, larger, ln, physics};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Speed below which a car is at rest, m/s: 0.1 km/h. ASSUMED, between the noise of wheel speed sensors at rest, up to 0.05 km/h, and the least speed of a
 /// shipped cycle that moves, 0.16 km/h (0.1 mph); a table in steps of 0.1 km/h keeps all of its speeds.
 pub const STANDSTILL_M_S: f64 = 0.1 / 3.6;
 
+/// Speed by which a car may be slower than its trace, m/s, where the procedure of the cycle says nothing else: 2 km/h (TR-3).
+pub const TOLERANCE_M_S: f64 = 2.0 / 3.6;
+
 /// True for the speed of a car at rest, m/s.
 #[must_use]
 pub fn is_standstill(speed_m_s: f64) -> bool {
     speed_m_s < STANDSTILL_M_S
 }
+
+/// Share of an interval next to its ends in which it is not cut where a speed is passed: parts so short would say no more than the interval.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,6 +221,7 @@ pub struct Trace {
     motions: Arc<Vec<Motion>>,
     gears: GearColumns,
     selector_s: f64,
+    tolerance_m_s: f64,
 }
 
 impl Trace {
@@ -237,6 +245,7 @@ impl Trace {
             intervals: Arc::new(intervals),
             gears,
             selector_s: 0.0,
+            tolerance_m_s: TOLERANCE_M_S,
         }
     }
 
@@ -249,6 +258,20 @@ impl Trace {
     #[must_use]
     pub fn with_selector_s(self, selector_s: f64) -> Self {
         Trace { selector_s, ..self }
+    }
+
+    /// Speed by which a car may be slower than the trace, m/s (TR-3).
+    pub fn tolerance_m_s(&self) -> f64 {
+        self.tolerance_m_s
+    }
+
+    /// The same trace with another tolerance of speed, m/s.
+    #[must_use]
+    pub fn with_tolerance_m_s(self, tolerance_m_s: f64) -> Self {
+        Trace {
+            tolerance_m_s,
+            ..self
+        }
     }
 
     /// The prescribed gears, to be changed.
@@ -298,14 +321,20 @@ impl Trace {
         starts.map(rest).collect()
     }
 
-    /// The same trace with rows at more times, s, in rising order.
+    /// The same trace with rows at more times, s.
     #[must_use]
     pub fn cut(&self, at_s: &[f64]) -> Self {
+        let mut at_s = at_s.to_vec();
+        at_s.sort_by(f64::total_cmp);
         let mut intervals = Vec::with_capacity(self.intervals.len() + at_s.len());
         let mut from = Vec::with_capacity(intervals.capacity());
         for (number, interval) in self.intervals.iter().enumerate() {
             let mut rest = *interval;
-            for &time_s in at_s {
+            let later = at_s.partition_point(|time_s| *time_s <= interval.start_s);
+            let within = at_s[later..]
+                .iter()
+                .take_while(|time_s| **time_s < interval.end_s);
+            for &time_s in within {
                 if rest.start_s < time_s && time_s < rest.end_s {
                     let share = (time_s - rest.start_s) / (rest.end_s - rest.start_s);
                     let rise_m_s = rest.end_speed_m_s - rest.start_speed_m_s;
@@ -323,7 +352,32 @@ impl Trace {
             from.push(number);
         }
         // A cut in a start or a stop may lie below the speed of standstill: the motion stays the same.
-        Self::as_given(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
+        Trace {
+            selector_s: self.selector_s,
+            tolerance_m_s: self.tolerance_m_s,
+            ..Self::as_given(intervals, self.gears.at_intervals(&from))
+        }
+    }
+
+    /// The same trace with rows where its speed rises through one of `rising` or falls through one of `falling`, m/s.
+    #[must_use]
+    pub fn cut_at_speeds(&self, rising: &[f64], falling: &[f64]) -> Cow<'_, Self> {
+        let mut at_s = Vec::new();
+        for interval in self.intervals.iter() {
+            let first = at_s.len();
+            let (v0, v1) = (interval.start_speed_m_s, interval.end_speed_m_s);
+            for speed in if v0 < v1 { rising } else { falling } {
+                let share = (speed - v0) / (v1 - v0);
+                if LEAST_SHARE < share && share < 1.0 - LEAST_SHARE {
+                    at_s.push(interval.start_s + share * (interval.end_s - interval.start_s));
+                }
+            }
+            at_s[first..].sort_by(f64::total_cmp);
+        }
+        match at_s.is_empty() {
+            true => Cow::Borrowed(self),
+            false => Cow::Owned(self.cut(&at_s)),
+        }
     }
 
     /// Duration, s.

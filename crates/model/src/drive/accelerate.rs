@@ -401,6 +401,7 @@ impl<'a> Pedal<'a> {
                 &Hold {
                     ratio,
                     clamp: None,
+                    end: None,
                     paced: true,
                 },
             ),
@@ -408,7 +409,8 @@ impl<'a> Pedal<'a> {
         };
         let state = drive.state();
         let w = row.engine_speed_rad_s;
-        let wanted_j = 0.5 * self.car.engine.inertia_kg_m2 * w * w;
+        let end = row.engine_end_rad_s;
+        let wanted_j = 0.5 * self.car.engine.inertia_kg_m2 * end * end;
         let slow = state.kinetic_j < wanted_j * (1.0 - ROUNDING) && !opens;
         let rises = step.end_speed_m_s > step.start_speed_m_s;
         let fast = rises && w > self.car.engine.highest_rad_s;

@@ -2,10 +2,9 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | FO-1 | T = T_f(P) + J (w(P)2 - w_0 2)/(2 w(P) dt), P the power at the wheels at which T is the torque that is given; T_f, w, losses, pressure by the step of the box at P (CV-1 to CV-6, LC-1 or TC-1) | derived: one power balance, solved for its other end |
+//! | FO-1 | T = T_f(P) + J (w_1(P)2 - w_0 2)/(2 w(P) dt), w_0 and w_1 at the ends of the step, P the power at the wheels at which T is the torque that is given; T_f, w, losses, pressure by the step of the box at P (CV-1 to CV-6, LC-1 or TC-1) | derived: one power balance, solved for its other end |
 //! | FO-2 | a T that no P has: the nearest that one has | derived: between least torque (CV-3) and full load (CV-4) at the ends of P; idle speed is held (LC-1) |
 //! | FO-3 | wheels that turn slower than 0.02 rad/s count as turning so fast | ASSUMED: 6 mm/s; the box at rest passes on creep torque alone, whatever the engine gives (LC-2) |
-//! | FO-4 | in a step in which a lock-up closes T = T_f(P), and the rotating energy of the slower engine is heat of the coupling | derived: SI-4, with an engine whose torque is given; it slips until the engine has come down |
 //!
 //! Nothing here is a second model: a torque that a drive has found at some power gives that power again. The clutch is the one of the
 //! drive: it is pressed so that its engine has the speed of LC-1 for the torque that it carries, within what its inertia allows. Engine, flywheel and primary are
@@ -13,11 +12,9 @@
 
 use super::step::advance;
 use super::{Car, State, loss_heat_w};
-use crate::flags::Flags;
 use crate::math::{larger, smaller};
 use crate::road::WheelDemand;
 use crate::thermal::{COOLANT, ENGINE_OIL, SUMP, speed_power};
-use crate::transmission::component::Component;
 use crate::transmission::cvt::Hold;
 use crate::transmission::{StepInput, StepOutput, TransmissionState};
 
@@ -114,10 +111,7 @@ impl<'a> Forward<'a> {
         self.state.running = self.state.running.started(given.engine_k[0]);
         let found = self.solve(given);
         let Turned {
-            output,
-            kinetic_w,
-            wheel_rad_s,
-            ..
+            output, kinetic_w, ..
         } = found.turned;
         let wheel = self.demand(given, found.power_w);
         let running = self.state.running;
@@ -127,8 +121,7 @@ impl<'a> Forward<'a> {
         });
         self.state.transmission = Some(found.after);
         self.state.kinetic_j += kinetic_w * given.dt_s;
-        let speeds_rad_s = (output.engine_rad_s, wheel_rad_s);
-        self.state.running = running.after(false, given.dt_s, speeds_rad_s);
+        self.state.running = running.after(false, given.dt_s, output.end_rad_s);
         found.turned
     }
 
@@ -199,11 +192,12 @@ impl<'a> Forward<'a> {
         let hold = Hold {
             ratio: given.ratio,
             clamp: None,
+            end: None,
             paced: true,
         };
         let (before, inertia) = (self.state.transmission, self.car.engine.inertia_kg_m2);
         let kinetic_j = self.state.kinetic_j;
-        let (after, mut output, begun_j) = self.with_input(given, &wheel, |car, _, input| {
+        let (after, output, begun_j) = self.with_input(given, &wheel, |car, _, input| {
             let mut after = before.unwrap_or_else(|| car.transmission.start(input));
             if let Some(own) = &mut after.cvt {
                 own.hold = Some(hold);
@@ -217,18 +211,9 @@ impl<'a> Forward<'a> {
             (after, output, begun_j)
         });
         self.state.kinetic_j = begun_j;
-        let w = output.engine_rad_s;
-        let kinetic_w = (0.5 * inertia * w * w - begun_j) / given.dt_s;
-        let mut taken_nm = output.shaft_nm;
-        if kinetic_w < 0.0 && self.closes(&output) {
-            // A coupling that loses a part only passes on the rest (LC-6).
-            let factor = self.car.transmission.coupling().loss_factor();
-            let lost = factor.map_or(1.0, |factor| smaller(factor, 1.0));
-            output.loss_w[Component::LaunchClutch] -= lost * kinetic_w; // FO-4
-            output.output_w -= (1.0 - lost) * kinetic_w;
-        } else {
-            taken_nm += kinetic_w / w; // FO-1
-        }
+        let (w, end) = (output.engine_rad_s, output.end_rad_s);
+        let kinetic_w = (0.5 * inertia * end * end - begun_j) / given.dt_s;
+        let taken_nm = output.shaft_nm + kinetic_w / w; // FO-1
         Tried {
             turned: Turned {
                 output,
@@ -241,14 +226,6 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// True if a lock-up closes in a step.
-    fn closes(&self, output: &StepOutput) -> bool {
-        let by_command = self.car.transmission.coupling().by_command();
-        by_command
-            && output.flags.contains(Flags::CLUTCH_SLIPPING)
-            && !output.flags.contains(Flags::LOCKUP_OPEN)
-    }
-
     /// The demand of wheels that turn as they do.
     fn demand(&self, given: &Given, power_w: f64) -> WheelDemand {
         let [from, to] = given.wheel_rad_s;
@@ -259,6 +236,7 @@ impl<'a> Forward<'a> {
             accel_m_s2: (to - from) / given.dt_s * radius_m,
             wheel_rad_s,
             power_w,
+            rise_w: 0.0,
             positive_j: larger(power_w, 0.0) * given.dt_s,
             negative_j: smaller(power_w, 0.0) * given.dt_s,
         }
@@ -291,6 +269,7 @@ impl<'a> Forward<'a> {
             dt_s: given.dt_s,
             engine_off: false,
             neutral_share: 0.0,
+            kinetic_j: self.state.kinetic_j,
         };
         f(car, &mut self.state.heat, &input)
     }

@@ -6,7 +6,7 @@
 //! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + wedge + penetration, F_i = -s (k_i mu_b (1-u_i)(1 - (i-1)/n) beta Tm + V_i), V_i the film's force, k_1 that of the shoulders | derived: moments about the centres of both pulleys; slip is not in them |
 //! | PX-2 | one F_1 and Tm = A + \|C_x\|/2, C_x = T_s/R_s - F_1, on both pulleys: what bands and film lose over their levers, step and mean tension | derived: a belt of two strands has one step of tension |
 //! | PX-3 | burnt fuel <= charge eta_v rho_0 V w/(4 pi) LHV/14.6, eta_v 1.05 or what the full-load line needs | derived: the air in the cylinders; 14.6 stoichiometric, 1.05 ASSUMED of an engine without charger |
-//! | PX-4 | rotating energy, the sum of its changes, = J w2/2 at the end of every step; less only where the engine gives full load and more is wanted | derived |
+//! | PX-4 | rotating energy, the sum of its changes, = J w2/2 at the end of every step; less only where the engine gives full load, or the brakes all that they have (SI-5), and more is wanted | derived |
 //! | PX-5 | losses >= 0, T_p w_p >= T_s w_s, no belt loss at rest | derived: second law |
 //! | PX-7 | losses + heat of the engine = heat to the air + sum C_i (T_i - T_i,before)/dt | derived: first law, by the temperatures of two rows |
 //! | PX-8 | T_p w_p - T_s w_s = losses of the belt, w_s by the road speed, w_p by slip | derived: power is torque times speed |
@@ -371,8 +371,11 @@ impl<'a> PhysicsCheck<'a> {
             }
             let crank_nm = row.engine_torque_nm + (row.accessories_w + row.kinetic_w) / w;
             held = crank_nm >= at.full_load_nm(w) * (1.0 - SOLVED);
+            // In overrun nothing is burnt for it: the brakes give what they have (SI-5).
+            held |= row.engine_torque_nm < 0.0 && row.brake_w <= ROUNDING * row.wheel_power_w.abs();
         }
-        let wanted_j = 0.5 * e.inertia_kg_m2 * w * w;
+        let end = row.engine_end_rad_s;
+        let wanted_j = 0.5 * e.inertia_kg_m2 * end * end;
         let Some(before_j) = self.rotating_j else {
             self.rotating_j = (!held).then_some(wanted_j); // what it was before the first row is not in it
             return;

@@ -44,8 +44,12 @@ pub struct Row<R: Real = f64> {
     pub wheel_work_negative_j: R,
     /// Power that could not be delivered, W.
     pub deficit_w: R,
+    /// Speed by which the car is slower than its trace at the end of the step, m/s (TR-3).
+    pub behind_m_s: R,
     /// Engine speed, rad/s.
     pub engine_speed_rad_s: R,
+    /// Engine speed at the end of the step, rad/s.
+    pub engine_end_rad_s: R,
     /// Torque at the flywheel into the transmission, without rotating inertia, Nm.
     pub engine_torque_nm: R,
     /// Engine torque with accessories, without inertia, over full-load torque at that speed, 0..1.
@@ -133,6 +137,8 @@ pub(super) struct Inertia<R: Real = f64> {
     pub crank_nm: R,
     pub accessories_nm: R,
     pub kinetic_w: R,
+    /// Part of it that the wheels give in place of the brakes (SI-5).
+    pub from_wheels_w: R,
     /// Power of a slower engine that neither its drag nor its load takes up (SI-4).
     pub surplus_w: R,
 }
@@ -148,6 +154,10 @@ pub(super) struct Solved<'a, R: Real = f64> {
     /// Store, starter and alternator of start-stop.
     pub electric: &'a Electric<R>,
     pub tyre_k: R,
+    /// Speed by which the car is slower than its trace, m/s.
+    pub behind_m_s: R,
+    /// Tolerance of it, m/s.
+    pub tolerance_m_s: f64,
 }
 
 /// Energy terms of a step, each from the model that owns it.
@@ -194,6 +204,8 @@ pub(super) fn row<R: Real>(
     let [first, second, third] = HIGHEST_K;
     let hot = t[first.0].gt(first.1) | t[second.0].gt(second.1) | t[third.0].gt(third.1);
     set_flag::<R>(&mut flags, Flags::TOO_HOT, hot);
+    let missed = a.behind_m_s.gt(a.tolerance_m_s);
+    set_flag::<R>(&mut flags, Flags::MISSED_TRACE, missed);
     let rolls = wheel.wheel_rad_s.gt(0.0);
     let row = Row {
         time_s: step.time_s,
@@ -207,7 +219,9 @@ pub(super) fn row<R: Real>(
         wheel_work_positive_j: wheel.positive_j,
         wheel_work_negative_j: wheel.negative_j,
         deficit_w: d.deficit_w,
+        behind_m_s: a.behind_m_s,
         engine_speed_rad_s: engine_rad_s,
+        engine_end_rad_s: d.end_rad_s,
         engine_torque_nm: d.shaft_nm,
         throttle: d.throttle,
         gear: d.gear.clone(),

@@ -9,6 +9,7 @@ use crate::engine::StartStop;
 use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{Heat, StartTemperatures};
+use crate::transmission::Transmission;
 
 /// Temperatures at the start of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,11 +174,30 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
     state
 }
 
-/// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop.
+/// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop, and where the driver of a manual
+/// box changes gear or opens the clutch by speed (MB-5), or fuel comes back in overrun (EN-11), so that no step has two gears.
 pub fn own_trace<'a>(car: &Car, trace: &'a Trace) -> Cow<'a, Trace> {
-    match &car.engine.start_stop {
+    let trace = match &car.engine.start_stop {
         Some(on) => Cow::Owned(cut_at_stops(trace, on)),
         None => Cow::Borrowed(trace),
+    };
+    let Transmission::Manual(manual) = &car.transmission else {
+        return trace;
+    };
+    if trace.gears(manual.overall.len()).is_some() {
+        return trace;
+    }
+    let radius_m = car.road_load.wheel_radius_m;
+    let opens = manual.opens_m_s(car.engine.idle_hot_rad_s, radius_m);
+    let cut = [car.engine.cut_above_rad_s, car.engine.fuel_back_rad_s];
+    let cuts = cut.map(|rad_s| manual.passes_m_s(rad_s, radius_m)).concat();
+    let falling = [&manual.shifts.down_m_s[..], &opens, &cuts].concat();
+    match trace {
+        Cow::Borrowed(trace) => trace.cut_at_speeds(&manual.shifts.up_m_s, &falling),
+        Cow::Owned(trace) => {
+            let cut = trace.cut_at_speeds(&manual.shifts.up_m_s, &falling);
+            Cow::Owned(cut.into_owned())
+        }
     }
 }
 

@@ -24,6 +24,8 @@ pub struct State<R: Real = f64, S = TransmissionState> {
     pub tyre_k: R,
     /// State of start-stop.
     pub start_stop: StartStopState,
+    /// Speed by which the car is slower than its trace, m/s (TR-3).
+    pub behind_m_s: R,
 }
 
 impl<R: Real, S> State<R, S> {
@@ -38,10 +40,11 @@ impl<R: Real, S> State<R, S> {
                 since_s: 0.0,
                 start_k: zero,
                 speed_rad_s: zero,
-                wheel_rad_s: zero,
+                end_rad_s: zero,
             },
             tyre_k: temp_k,
             start_stop: StartStopState::default(),
+            behind_m_s: zero,
         }
     }
 }

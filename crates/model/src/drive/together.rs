@@ -15,9 +15,9 @@
 
 use std::borrow::Cow;
 
-use super::run::{Conditions, Outcome, Start, drive_into};
+use super::run::{Conditions, Outcome, Start, drive_into, own_trace};
 use super::simulate::{Recorder, State};
-use super::step::{begun, end, engine, wheel};
+use super::step::{Past, begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
@@ -126,10 +126,15 @@ struct Prepared<'a> {
 impl<'a> Prepared<'a> {
     fn new(run: &'a Run, cycle: &'a Cycle) -> Self {
         let CarTrace { trace, schedule } = run.vehicle.trace(cycle);
+        let car = run.vehicle.car(run.conditions.ambient_k);
+        let trace = match trace {
+            Cow::Borrowed(trace) => own_trace(&car, trace),
+            Cow::Owned(trace) => Cow::Owned(own_trace(&car, &trace).into_owned()),
+        };
         Prepared {
             run,
             cycle,
-            car: run.vehicle.car(run.conditions.ambient_k),
+            car,
             trace,
             schedule,
         }
@@ -337,8 +342,9 @@ fn drive_step<R: Real, T: Driveline<R>>(
     let zero = state.tyre_k.splat(0.0);
     let mut output = StepOutput::like(zero); // first, as in `Drive::step`
     let wheel = wheel(car, step, &mut state.tyre_k);
-    let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
-    let input = StepInput {
+    let driven = (state.transmission.as_ref(), gear);
+    let engine = engine(car, step, &wheel, driven, &state.heat, &mut state.running);
+    let mut input = StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &car.oil,
@@ -352,14 +358,22 @@ fn drive_step<R: Real, T: Driveline<R>>(
             step,
             state.running.since_s,
         ),
+        kinetic_j: state.kinetic_j,
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
+    input.kinetic_j = state.kinetic_j;
     zero.vectorize(|| {
         car.transmission
             .solve_into(&input, transmission, &mut output)
     });
-    let past = (&mut state.kinetic_j, &mut state.running, state.tyre_k);
+    let past = Past {
+        kinetic_j: &mut state.kinetic_j,
+        running: &mut state.running,
+        tyre_k: state.tyre_k,
+        behind_m_s: &mut state.behind_m_s,
+        tolerance_m_s: trace.tolerance_m_s(),
+    };
     let electric = Electric::none(zero);
     let (result, heat) = end(car, step, &input, (&mut output, &electric), past);
     state.heat = heat;

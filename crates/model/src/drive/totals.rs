@@ -1,8 +1,12 @@
 //! Sums of a run by phase, gathered row by row without keeping the rows.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | TS-1 | e^2 = sum (m_i - m_(i-1))^2 h_i^2/12, m fuel flow of rows, h_i the longer of both steps: standard deviation of the fuel where each change between two rows falls anywhere within a step | derived: a uniform distribution over h has h^2/12; of first order, as changes of a drive stay as many; held against steps of 0.05 s by a test |
 
 use super::{EnergyTerms, HIGHEST_K, Recorder, Row, TERM_NAMES};
 use crate::flags::Flags;
-use crate::math::{Mask, Real, physics};
+use crate::math::{Mask, Real, larger, physics};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::{ByComponent, Component};
 
@@ -86,6 +90,10 @@ pub struct Totals<R: Real = f64> {
     pub not_finite_at_s: R::PerLane<f64>,
     /// Largest residual of the implicit solve.
     pub worst_residual: R,
+    /// Sum over the rows of the square of the change of fuel flow from the row before, times the length of the longer of both, kg2 (TS-1).
+    pub fuel_change_kg2: R,
+    /// Fuel flow, kg/s, and length, s, of the last row.
+    pub last: (R, f64),
     /// Evaluations of the driveline.
     pub evaluations: R::PerLane<u64>,
     /// Rows.
@@ -106,6 +114,11 @@ impl Totals {
             .filter(|((f, _), _)| *f == flag)
             .map(|(_, s)| s)
             .sum()
+    }
+
+    /// Estimate of the error of the fuel by the length of the steps, kg (TS-1).
+    pub fn step_error_kg(&self) -> f64 {
+        (self.fuel_change_kg2 / 12.0).sqrt()
     }
 
     /// Sums over some phases.
@@ -195,6 +208,8 @@ impl<R: Real> Totals<R> {
             not_finite_s: R::per_lane(|_| 0.0),
             not_finite_at_s: R::per_lane(|_| f64::NAN),
             worst_residual: zero,
+            fuel_change_kg2: zero,
+            last: (zero, 0.0),
             evaluations: R::per_lane(|_| 0),
             rows: 0,
         }
@@ -218,6 +233,8 @@ impl<R: Real> Totals<R> {
             not_finite_s: *R::get(&self.not_finite_s, run),
             not_finite_at_s: *R::get(&self.not_finite_at_s, run),
             worst_residual: self.worst_residual.lane(run),
+            fuel_change_kg2: self.fuel_change_kg2.lane(run),
+            last: (self.last.0.lane(run), self.last.1),
             evaluations: *R::get(&self.evaluations, run),
             rows: self.rows,
         }
@@ -277,7 +294,7 @@ impl<R: Real> Totals<R> {
 
     /// The worst deficit of the runs that miss the trace.
     fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
-        let misses = |run| R::get(&row.flags, run).contains(Flags::MISSED_TRACE);
+        let misses = |run| R::get(&row.flags, run).contains(Flags::FULL_LOAD);
         let lacks = lacks & at_s.mask_lanes(misses);
         let nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
         self.worst_deficit_w = lacks.select(row.deficit_w, self.worst_deficit_w);
@@ -328,6 +345,12 @@ impl<R: Real> Recorder<R> for Totals<R> {
         lengthen(&mut p.distance_m, row.distance_m);
         let fuel_kg = row.fuel_kg_s * row.dt_s;
         p.fuel_kg = p.fuel_kg + fuel_kg;
+        let (last_kg_s, last_s) = self.last;
+        if last_s > 0.0 {
+            let change_kg = (row.fuel_kg_s - last_kg_s) * larger(row.dt_s, last_s);
+            self.fuel_change_kg2 = self.fuel_change_kg2 + change_kg * change_kg;
+        }
+        self.last = (row.fuel_kg_s, row.dt_s);
         if row.rests() {
             p.standstill_fuel_kg = p.standstill_fuel_kg + fuel_kg;
         }

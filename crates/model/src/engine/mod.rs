@@ -328,6 +328,10 @@ impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R> {
         self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
     }
 
+    fn rotating_j(&self, speed_rad_s: R) -> R {
+        0.5 * self.engine.inertia_kg_m2 * speed_rad_s * speed_rad_s
+    }
+
     /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
     fn slowed_rad_s(&self, from_rad_s: R, load_nm: R, dt_s: f64) -> R {
         let drag_nm = self.own_drag_nm(self.idle_rad_s);

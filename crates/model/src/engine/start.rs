@@ -3,13 +3,13 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | EN-9 | fuel of a start: m(t) = m_0 clip((60 degC - T_start)/60 K, 0, 1) F(t/tau), F(u) = 2u - u2 up to u = 1, then 1 | form: enrichment that fades in some 30 s (manuals of the 1990s), by coolant at the start; size ASSUMED |
-//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times from none to all between n_back and n_cut | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
+//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times the mean over the step of from none to all between n_back and n_cut, speed linear: of a box with gears that of the wheels, of a CVT that before the step, at most that in low | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
 //!
 //! With ramps in place of a hysteresis the fuel of a step is a continuous function of what went before, and no state is carried.
 
 use super::Engine;
 use crate::lubricant::ZERO_DEGC_K;
-use crate::math::{Mask, Real, both, physics, ramp};
+use crate::math::{Mask, Real, both, mean_ramp, physics};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
@@ -21,10 +21,10 @@ pub struct Running<R: Real = f64> {
     pub since_s: f64,
     /// Coolant at the start, K.
     pub start_k: R,
-    /// Speed, rad/s.
+    /// Speed at the beginning of the step, rad/s.
     pub speed_rad_s: R,
-    /// Speed of the wheels, rad/s.
-    pub wheel_rad_s: R,
+    /// Speed that it has at the end of it as far as that is known before, rad/s.
+    pub end_rad_s: R,
 }
 
 impl Running {
@@ -33,7 +33,7 @@ impl Running {
         since_s: 0.0,
         start_k: 0.0,
         speed_rad_s: 0.0,
-        wheel_rad_s: 0.0,
+        end_rad_s: 0.0,
     };
 
     /// Started long ago.
@@ -58,31 +58,26 @@ impl<R: Real> Running<R> {
         }
     }
 
-    /// The same with an engine in gear slowed down as the wheels are in a step, so that EN-11 has no lag of a step.
+    /// The same with the speeds that the engine has at the beginning and at the end of a step in overrun, rad/s, so that EN-11 has no lag of a step.
     #[must_use]
-    pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
-        let keeps = wheel_rad_s.ge(self.wheel_rad_s);
-        if keeps.all() {
-            return self;
-        }
-        let slowed = self.speed_rad_s * wheel_rad_s / self.wheel_rad_s;
+    pub fn turning(self, [speed_rad_s, end_rad_s]: [R; 2]) -> Running<R> {
         Running {
-            speed_rad_s: keeps.select(self.speed_rad_s, slowed),
-            wheel_rad_s: keeps.select(self.wheel_rad_s, wheel_rad_s),
+            speed_rad_s,
+            end_rad_s,
             ..self
         }
     }
 
-    /// After a step of a running engine, or of one that is off: `(engine_rad_s, wheel_rad_s)` are the speeds in the step.
+    /// After a step of a running engine, or of one that is off, at the end of which it has a speed, rad/s.
     #[must_use]
-    pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (R, R)) -> Running<R> {
+    pub fn after(self, off: bool, dt_s: f64, engine_rad_s: R) -> Running<R> {
         if off {
             let zero = engine_rad_s.splat(0.0);
             return Running {
                 since_s: 0.0,
                 start_k: zero,
                 speed_rad_s: zero,
-                wheel_rad_s: zero,
+                end_rad_s: zero,
             };
         }
         let mut since_s = self.since_s;
@@ -90,7 +85,7 @@ impl<R: Real> Running<R> {
         Running {
             since_s,
             speed_rad_s: engine_rad_s,
-            wheel_rad_s,
+            end_rad_s: engine_rad_s,
             ..self
         }
     }
@@ -129,7 +124,7 @@ impl<R: Real> Engine<R> {
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
     pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
         let warm = (coolant_k - self.cut_from_k).clamp(0.0, 1.0);
-        let speed = running.speed_rad_s;
-        warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
+        let speeds = [running.speed_rad_s, running.end_rad_s];
+        warm * mean_ramp(speeds, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
     }
 }

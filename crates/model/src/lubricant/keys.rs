@@ -23,7 +23,7 @@ keys! {
         FilmKeys::TABLE, BandContactKeys::TABLE, MicroSlipKeys::TABLE, MacroSlipKeys::TABLE, WetClutchKeys::TABLE, GearKeys::TABLE
     ] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
-        band_rise_per_k: or(0.003_01, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
+        band_rise_per_k: or(0.003, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
         segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley in micro slip", ["SL-4"];
         capacity: or(0.09, number(0.02, 0.4)), "friction segment on pulley in macro slip: torque capacity", ["VA-4"];
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
@@ -32,8 +32,8 @@ keys! {
     /// Keys of `[friction.film]`.
     FILM: FilmKeys = "film" [] {
         enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
-        half_n_per_m: or(0.087, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
-        exponent: or(1.85, number(0.3, 8.0)), "exponent of the film's share", ["LU-5"];
+        half_n_per_m: or(0.09, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        exponent: or(1.86, number(0.3, 8.0)), "exponent of the film's share", ["LU-5"];
         half_thickness_um: or(1.05, number(0.01, 100.0)), "thickness of the film where it carries half", ["FI-2"];
         film_heating_w: or(4000.0, number(1.0, 1e9)), "dissipation of an interface that halves the shear of its film", ["FI-1", "FH-1"];
     }

@@ -122,11 +122,18 @@ impl BsfcMap {
         basis: &Basis,
         friction: (f64, f64),
     ) -> Result<Self, NoMap> {
-        let (points, left_out) = table.points(basis)?;
-        let speeds = levels(points.iter().map(|point| point.speed_rad_s));
-        let loads = levels(points.iter().map(|point| point.bmep_pa));
-        let place = |of: &Point| [place(&speeds, of.speed_rad_s), place(&loads, of.bmep_pa)];
-        let mut points = points;
+        let (mut points, left_out) = table.points(basis)?;
+        // Points that fill a grid but for the rounding of their numbers are one: triangles between a level and itself are none.
+        let near = match is_grid(&points, ROUNDING) {
+            true => ROUNDING,
+            false => SAME,
+        };
+        let speeds = levels(points.iter().map(|point| point.speed_rad_s), near);
+        let loads = levels(points.iter().map(|point| point.bmep_pa), near);
+        let place = |of: &Point| {
+            let speed = place(&speeds, of.speed_rad_s, near);
+            [speed, place(&loads, of.bmep_pa, near)]
+        };
         points.sort_by_key(&place);
         let mut twice = points
             .windows(2)
@@ -214,17 +221,37 @@ impl BsfcMap {
     }
 }
 
-/// Values, rising, each once: neighbours in the ninth digit are one.
-fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+/// Values that differ by this share are one, ...
+const SAME: f64 = 1e-9;
+/// ... and by this one where they fill a grid: numbers of five figures, changed into another unit.
+const ROUNDING: f64 = 1e-4;
+
+/// True if the points are each pair of their levels once.
+fn is_grid(points: &[Point], near: f64) -> bool {
+    let speeds = levels(points.iter().map(|point| point.speed_rad_s), near);
+    let loads = levels(points.iter().map(|point| point.bmep_pa), near);
+    if speeds.len() * loads.len() != points.len() {
+        return false;
+    }
+    let mut is_there = vec![false; points.len()];
+    points.iter().all(|point| {
+        let at = place(&speeds, point.speed_rad_s, near) * loads.len()
+            + place(&loads, point.bmep_pa, near);
+        !std::mem::replace(&mut is_there[at], true)
+    })
+}
+
+/// Values, rising, each once: neighbours that differ by a share up to `near` are one.
+fn levels(values: impl Iterator<Item = f64>, near: f64) -> Vec<f64> {
     let mut levels: Vec<f64> = values.collect();
     levels.sort_by(f64::total_cmp);
-    levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * b.abs());
+    levels.dedup_by(|a, b| (*a - *b).abs() <= near * b.abs());
     levels
 }
 
 /// Place of a value among levels.
-fn place(levels: &[f64], x: f64) -> usize {
-    let before = levels.partition_point(|&own| own < x - 1e-8 * x.abs());
+fn place(levels: &[f64], x: f64, near: f64) -> usize {
+    let before = levels.partition_point(|&own| own < x - 10.0 * near * x.abs());
     before.min(levels.len() - 1)
 }
 

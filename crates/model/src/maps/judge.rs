@@ -4,9 +4,11 @@
 use super::{BsfcMap, NoMap, Point};
 use crate::math::rpm;
 
-/// Best brake efficiencies of engines of cars. The measured maps of `classes` have 0.36 to 0.42; the widest here has room for a racing engine and for
-/// one that is worn. ASSUMED.
-const BEST: std::ops::RangeInclusive<f64> = 0.20..=0.55;
+/// Best brake efficiencies of engines of cars. The measured maps of `classes` have 0.36 to 0.42; the widest here has room for a diesel engine and for
+/// one that is worn. g/kWh that are g/hp-h make 0.45 to 0.56 of these. ASSUMED.
+const BEST: std::ops::RangeInclusive<f64> = 0.24..=0.45;
+/// Below this speed no engine is loaded, and measured rows there are extrapolated by those who make a map: they are doubted, and refuse nothing, rad/s (600 rpm).
+const LOADED_RAD_S: f64 = 63.0;
 /// Load over full load up to which a point is judged: rounding of the units.
 const UP_TO: f64 = 1.0 + 1e-6;
 
@@ -50,6 +52,7 @@ impl BsfcMap {
             if falls.len() > before
                 && let [first, .., last] = burns.as_slice()
                 && last.fuel_pa < first.fuel_pa
+                && last.speed_rad_s > LOADED_RAD_S
             {
                 return Verdict {
                     refusal: Some(self.falling(first, last)),

@@ -53,6 +53,26 @@ pub fn ramp<R: Real>(x: R, from: R, to: R) -> R {
     width.abs().gt(0.0).select(along, step)
 }
 
+/// Mean of [`ramp`] over numbers from one to another, each as often.
+#[physics]
+pub fn mean_ramp<R: Real>([first, last]: [R; 2], from: R, to: R) -> R {
+    let apart = last - first;
+    let middle = ramp(0.5 * (first + last), from, to);
+    let wide = apart.abs().gt(1e-6 * (first.abs() + last.abs()));
+    if !wide.any() {
+        return middle;
+    }
+    let width = to - from;
+    let zero = apart.splat(0.0);
+    // Integral of the ramp up to a number.
+    let up_to = |x: R| {
+        let along = (x - from).clamp(zero, width.max(zero));
+        let risen = width.gt(0.0).select(0.5 * along * along / width, zero);
+        risen + (x - to).max(zero)
+    };
+    wide.select((up_to(last) - up_to(first)) / apart, middle)
+}
+
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
 #[physics]
 pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R {

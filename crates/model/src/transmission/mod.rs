@@ -18,10 +18,11 @@ use self::component::{Component, Part};
 use self::coupling::Coupling;
 use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
-use crate::cycle::{Step, Trace};
+use crate::cycle::{GearCommand, Step, Trace};
 use crate::maps::LossMap;
 use crate::math::{Real, physics};
 use crate::prime_mover::PrimeMover;
+use crate::road::WheelDemand;
 use std::fmt::Debug;
 
 /// A transmission of either kind.
@@ -54,6 +55,16 @@ pub trait Driveline<R: Real = f64> {
 
     /// True for a CVT, which drives the automatic trace.
     fn is_cvt(&self) -> bool;
+
+    /// Engine speeds at the beginning and end of a step in overrun as far as they are known before it, rad/s: with gears those of the wheels in the gear of
+    /// the step; with a CVT that of the engine, up to the one in the lowest gear. Wheels with their speeds at both ends over the mean.
+    fn overrun_rad_s(
+        &self,
+        state: Option<&Self::State>,
+        wheel: (&WheelDemand<R>, [f64; 2]),
+        gear: Option<GearCommand>,
+        engine_rad_s: R,
+    ) -> [R; 2];
 
     /// Share of a step at rest that the box is in neutral (SE-1, SE-2); `running_s`: how long the engine has run since its start.
     fn neutral_share(
@@ -110,6 +121,21 @@ impl Driveline for Transmission {
 
     fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
+    }
+
+    fn overrun_rad_s(
+        &self,
+        state: Option<&TransmissionState>,
+        wheel: (&WheelDemand, [f64; 2]),
+        gear: Option<GearCommand>,
+        engine_rad_s: f64,
+    ) -> [f64; 2] {
+        match self {
+            Transmission::Cvt(cvt) => cvt.in_overrun_rad_s(wheel, engine_rad_s),
+            Transmission::Manual(manual) => {
+                manual.in_overrun_rad_s(state.map(|state| &state.driveline), wheel, gear)
+            }
+        }
     }
 
     fn neutral_share(

@@ -30,6 +30,8 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub engine_off: bool,
     /// Share of a step at rest that an automatic box is in neutral, 0..1 (SE-3).
     pub neutral_share: R,
+    /// Rotating energy of the engine before the step, J: less than that of its speed where it lags (SI-2, SI-5).
+    pub kinetic_j: R,
 }
 
 #[physics]
@@ -49,7 +51,7 @@ impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
 pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
     pub gear: R::PerLane<u8>,
-    /// Engine speed, rad/s.
+    /// Engine speed at the end of the step, rad/s.
     pub engine_rad_s: R,
     /// Throttle, as a start for the solve.
     pub throttle: R,
@@ -57,6 +59,8 @@ pub struct DrivelineState<R: Real = f64> {
     pub secondary_pa: R,
     /// True where the coupling has locked.
     pub coupled: R::Mask,
+    /// Speed by which the engine is faster over a lock-up clutch that closes, at the end of the step, rad/s (TC-9).
+    pub closing_rad_s: R,
     /// True where the car stood still.
     pub stood: bool,
     /// Time that it has, s, with the engine running; kept by a CVT.
@@ -68,6 +72,8 @@ pub struct DrivelineState<R: Real = f64> {
 pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
     pub engine_rad_s: R,
+    /// Engine speed at the end of the step, rad/s.
+    pub end_rad_s: R,
     /// Torque at the flywheel into the transmission, without inertia, Nm.
     pub shaft_nm: R,
     /// Throttle 0..1.
@@ -125,6 +131,7 @@ impl<R: Real> StepOutput<R> {
         let (zero, none) = (number.splat(0.0), number.splat(f64::NAN));
         StepOutput {
             engine_rad_s: zero,
+            end_rad_s: zero,
             shaft_nm: zero,
             throttle: zero,
             gear: R::per_lane(|_| 0),
@@ -187,6 +194,7 @@ impl<R: Real> StepOutput<R> {
         }
         numbers!(
             engine_rad_s,
+            end_rad_s,
             shaft_nm,
             throttle,
             belt_ratio,

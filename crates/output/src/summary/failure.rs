@@ -2,16 +2,12 @@
 //!
 //! | check | fails |
 //! |---|---|
-//! | `missed_trace` | rows with the flag, by more than the tolerance of the trace (TR-1) |
+//! | `missed_trace` | a row with the flag: slower than the trace by more than its tolerance (TR-3) |
 //! | `not_converged`, `too_hot`, `wrong_gear` | a row with the flag |
 //! | `overspeed` | a row with the flag, more than 1 % above the end of the full-load line as well |
 //! | `ledger_error` | an energy balance of a row open by more than 1e-9, or that of the run by more than the rounding of its sums |
 //! | `not_finite` | a row in which torque, speed, fuel or a temperature is not finite; its ledger is not checked |
 //! | flags of [`STRICT`] | under `--strict` a row with the flag |
-//!
-//! | label | statement | status |
-//! |---|---|---|
-//! | TR-1 | the car is slower than the trace by at most dv = F t/m_e, F the largest missing force at the wheels, t the time of all rows that miss; no failure up to 2 mph on US cycles, 2 km/h on others | derived, an upper bound; tolerances: 40 CFR 1066.425, UN Regulation 83, UN GTR 15, from memory |
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +15,7 @@ use super::{Driven, Settings};
 use crate::Flags;
 use crate::number::{finite, fixed};
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_model::drive::{HIGHEST_K, Totals, Vehicle};
+use cvtcycle_model::drive::{HIGHEST_K, Totals};
 use cvtcycle_model::keys::rpm;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::math::larger;
@@ -133,34 +129,10 @@ fn phase_at(cycle: &Cycle, driven: &Driven, at_s: f64) -> Option<String> {
     Some(name.unwrap_or(&cycle.name).to_lowercase())
 }
 
-/// Cycles of the US, whose tolerance is in mph.
-const US_CYCLES: [&str; 7] = ["ftp75", "udds", "hwfet", "us06", "sc03", "nycc", "la92"];
-
-/// Tolerance of the speed of a trace, m/s (TR-1).
-fn trace_tolerance_m_s(cycle: &Cycle) -> f64 {
-    match US_CYCLES.contains(&cycle.name.as_str()) {
-        true => 2.0 * 0.44704,
-        false => 2.0 / 3.6,
-    }
-}
-
-/// Speed by which a car falls behind its trace at most, m/s (TR-1); infinite where the missing force is not known.
-fn slower_m_s(car: &Vehicle, totals: &Totals) -> f64 {
-    let load = &car.road_load.base;
-    let force_n = totals.worst_deficit_nm / load.wheel_radius_m;
-    let slower = force_n * totals.seconds(Flags::MISSED_TRACE) / load.inertia_kg; // TR-1
-    if slower.is_finite() {
-        slower
-    } else {
-        f64::INFINITY
-    }
-}
-
-/// True if a run is slower than its trace by more than the tolerance of the test (TR-1).
+/// True if a run is slower than its trace by more than the tolerance of the test (TR-3).
 #[must_use]
-pub fn has_failed_trace(cycle: &Cycle, car: &Vehicle, totals: &Totals) -> bool {
+pub fn has_failed_trace(totals: &Totals) -> bool {
     totals.seconds(Flags::MISSED_TRACE) > 0.0
-        && slower_m_s(car, totals) > trace_tolerance_m_s(cycle)
 }
 
 /// Relative errors of the energy balances of a run: maximum over the rows, and of the sums.
@@ -185,8 +157,7 @@ pub(super) fn failures(
         ..failure
     };
 
-    let missed =
-        flag(Flags::MISSED_TRACE).filter(|_| has_failed_trace(cycle, driven.setup, totals));
+    let missed = flag(Flags::MISSED_TRACE);
     let missed = missed.map(|failure| match Deficit::worst(cycle, driven) {
         Some(worst) => at(failure, worst.at_s).value(worst.power_w / 1e3, None::<f64>, "kW"),
         None => failure,

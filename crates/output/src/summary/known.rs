@@ -20,6 +20,9 @@ pub struct DrawnDifference {
     /// Quantiles 0.05, 0.5 and 0.95 of the difference, per cent; null (NaN) where all pairs fail.
     #[serde(deserialize_with = "numbers")]
     pub percent: [f64; 3],
+    /// Quantiles 0.05, 0.5 and 0.95 of the fuel of the subject over the draws in which it works, L/100 km; none where too many fail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fuel_l_per_100km: Option<[f64; 3]>,
 }
 
 /// Numbers of which JSON has null for what is not finite.

@@ -3,7 +3,7 @@
 use crate::fleet_spread::FleetRange;
 use serde::{Deserialize, Serialize};
 
-use super::failure::{Deficit, Failure, LedgerErrors, failures};
+use super::failure::{Deficit, Failure, LedgerErrors, failures, has_failed_trace};
 use super::maps_left::MapLeft;
 use super::phases::{PhaseFuel, PhaseSummary, phases, weighted_fuel};
 use super::{Driven, Named, PriceSummary, Settings};
@@ -115,8 +115,11 @@ pub struct RunSummary {
     pub ledger_error: Option<f64>,
     /// Ledger error of the terms summed over the run.
     pub run_ledger_error: Option<f64>,
-    /// Time in which the car could not follow the trace.
+    /// Time in which the car was slower than its trace by more than the tolerance of the test (TR-3).
     pub trace_missed_s: f64,
+    /// Standard deviation of the fuel by the length of the steps (TS-1).
+    #[serde(default)]
+    pub step_error_percent: Option<f64>,
     /// Time outside the validity of a model.
     pub outside_validity_s: f64,
     /// Seconds with each flag.
@@ -351,9 +354,10 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         ledger_error: finite(totals.ledger_error),
         run_ledger_error: finite(larger(all.terms.power_error(), all.terms.heat_error())),
         trace_missed_s: seconds(Flags::MISSED_TRACE),
+        step_error_percent: finite(100.0 * totals.step_error_kg() / all.fuel_kg),
         outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
         flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
-        worst_deficit: Deficit::worst(cycle, driven),
+        worst_deficit: Deficit::worst(cycle, driven).filter(|_| has_failed_trace(totals)),
         solve: Solve {
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),

@@ -165,8 +165,12 @@ def timed_columns(key: str, frame: Any) -> dict[str, list[Any]]:
     if index is not None and hasattr(index, "dtype") and not _has_time(columns):
         # asammdf and loggers have their stamps in the index; a plain count of the rows has no name.
         name = str(getattr(index, "name", None) or "")
-        if getattr(index.dtype, "kind", "") in ("m", "M") or (name and getattr(index.dtype, "kind", "") in "fiu"):
+        kind = getattr(index.dtype, "kind", "")
+        is_text = kind == "O" and name != "" and len(index) > 0 and isinstance(index[0], str)
+        if kind in ("m", "M") or (name and kind in "fiu"):
             columns = {_time_name(name or "time"): _listed("index", index), **columns}
+        elif is_text:
+            columns = {name: _listed("index", index), **columns}
     timed = {}
     for name, values in columns.items():
         seconds = _seconds(values)
@@ -188,7 +192,7 @@ def _seconds(values: Sequence[Any]) -> list[Any] | None:
     """Seconds since the first of datetimes or timedeltas; None for other values. Missing ones stay missing."""
     import datetime
 
-    first = next((value for value in values if value is not None and value == value), None)
+    first = next((value for value in values if _is_there(value)), None)
     if isinstance(first, datetime.timedelta):
         return [value.total_seconds() if _is_there(value) else None for value in values]
     if isinstance(first, datetime.datetime):
@@ -197,7 +201,9 @@ def _seconds(values: Sequence[Any]) -> list[Any] | None:
 
 
 def _is_there(value: Any) -> bool:
-    return value is not None and value == value
+    """False for None, NaN, NaT, and for the missing value of pandas, whose comparison is no truth either."""
+    same: Any = value is not None and value == value
+    return type(same).__name__ != "NAType" and bool(same)
 
 
 def table_text(columns: Mapping[str, Sequence[Any]]) -> bytes:
@@ -218,7 +224,7 @@ def _lengths(lengths: Mapping[str, int]) -> str:
 
 
 def _word(value: Any) -> str:
-    if value is None:
+    if value is None or type(value).__name__ in ("NAType", "NaTType"):
         return ""
     if isinstance(value, bool):
         return str(int(value))

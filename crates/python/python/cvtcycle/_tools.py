@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import numbers
 import os
 from collections.abc import Iterable
 from typing import Any
@@ -122,9 +124,20 @@ def fleet(
         except OSError as error:
             raise bad("cars", f"cannot read the table: {error.strerror}", value=name, hint="check the path") from None
     else:
-        text = table_text(frame_columns("cars", cars))
+        columns = frame_columns("cars", cars)
+        text = table_text({name: [_car_cell(value) for value in values] for name, values in columns.items()})
     word = None if map is None else path_word("map", map)
     return Table(_native.fleet(name, text, word, texts("tests", tests), assignments(set), float(dt_s), threads))
+
+
+def _car_cell(value: Any) -> Any:
+    """A cell of a frame of cars: pandas has NaN where a text or number is missing, and then a year as 2018.0."""
+    if not isinstance(value, numbers.Real) or isinstance(value, numbers.Integral):
+        return value
+    number = float(value)
+    if math.isnan(number):
+        return None
+    return int(number) if number.is_integer() else number
 
 
 def validate(

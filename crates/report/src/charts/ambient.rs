@@ -1,5 +1,6 @@
 //! Pictures of a matrix of ambient temperatures: fuel, the subject's excess, warm-up side by side.
 
+use super::engine::cell;
 use super::lines::{LineChart, LinePanel, Look, Palette, Points, line_chart};
 use super::picture::Picture;
 use crate::number::{degc, grouped, signed};
@@ -84,15 +85,35 @@ pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
     })
 }
 
-/// Excess of the subject against ambient temperature; `None` without baselines.
-pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
+/// Range of a difference by measured cars, per cent, by the place of a baseline among the cars, ambient temperature and computed difference.
+pub type RangeOf<'r> = &'r dyn Fn(usize, f64, f64) -> Option<[f64; 2]>;
+
+/// Excess of the subject against ambient temperature, with its range from the first start; `None` without baselines.
+pub fn ambient_penalty(matrix: &Matrix, title: &str, range_of: RangeOf) -> Option<Picture> {
     let (subject, baselines) = matrix.cars.split_first()?;
     let over: Vec<String> = baselines
         .iter()
         .map(|name| format!("over {name}"))
         .collect();
+    let first = matrix
+        .fuel
+        .first()
+        .map_or(&[][..], |part| &part.excess_percent);
+    let bands = first.iter().enumerate().map(|(k, by_start)| {
+        let numbers = by_start.first().map_or(&[][..], Vec::as_slice);
+        let range = |(degc, percent): &(f64, f64)| {
+            let [low, high] = range_of(k + 1, *degc, *percent)?;
+            Some((*degc, low, high))
+        };
+        let own = points(&matrix.ambient_degc, numbers);
+        own.iter().filter_map(range).collect::<Vec<_>>()
+    });
+    let bands: Vec<Vec<(f64, f64, f64)>> = bands.collect();
+    let is_open = bands
+        .first()
+        .is_some_and(|band| band.iter().any(|(_, low, high)| low * high < 0.0));
     let mut chart = LineChart {
-        title: penalty_title(matrix, subject),
+        title: penalty_title(matrix, subject, is_open),
         subject: title.to_owned(),
         same_y: true,
         legend: "Baseline, start".into(),
@@ -103,8 +124,40 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
     chart.panels.truncate(1);
     for panel in &mut chart.panels {
         panel.with_y = vec![0.0];
+        let looks = (0..).map(|k| look(matrix, k + 1, 0));
+        panel.bands = looks
+            .zip(bands.iter().cloned())
+            .filter(|(_, band)| !band.is_empty())
+            .collect();
     }
-    (!baselines.is_empty()).then(|| line_chart(&chart))
+    if let (Some(start), true) = (
+        matrix.starts.first(),
+        bands.iter().any(|band| !band.is_empty()),
+    ) {
+        chart.notes = vec![format!(
+            "Bands: 90 % range by the error of the model on measured cars, start {start}."
+        )];
+    }
+    if baselines.is_empty() {
+        return None;
+    }
+    let mut picture = line_chart(&chart);
+    for (name, band) in over.iter().zip(&bands).filter(|(_, band)| !band.is_empty()) {
+        for (end, of) in [("from", 0), ("to", 1)] {
+            picture
+                .table
+                .columns
+                .push((format!("{name}, 90 % {end}"), "%"));
+            for row in &mut picture.table.rows {
+                let own = band
+                    .iter()
+                    .find(|(degc, ..)| row[0] == cell(*degc, 1.0) || row[0] == cell(*degc, 0.1));
+                let own = own.map_or(f64::NAN, |(_, low, high)| [*low, *high][of]);
+                row.push(cell(own, 0.1));
+            }
+        }
+    }
+    Some(picture)
 }
 
 /// Numbers at the lowest and the highest ambient temperature that has one, in that order.
@@ -137,8 +190,8 @@ fn fuel_title(matrix: &Matrix) -> String {
     )
 }
 
-/// Title: dependence of the difference to the first baseline on the ambient temperature.
-fn penalty_title(matrix: &Matrix, subject: &str) -> String {
+/// Title: dependence of the difference to the first baseline on the ambient temperature; `is_open` where the range of measured cars holds both signs.
+fn penalty_title(matrix: &Matrix, subject: &str, is_open: bool) -> String {
     let part = matrix.fuel.first();
     let percent = part.and_then(|part| part.excess_percent.first()?.first());
     let numbers = percent
@@ -149,9 +202,13 @@ fn penalty_title(matrix: &Matrix, subject: &str) -> String {
     let low = numbers.clone().fold(f64::INFINITY, f64::min);
     let high = numbers.fold(f64::NEG_INFINITY, f64::max);
     let named = matrix.cars.get(1).zip(matrix.starts.first());
+    let open = match is_open {
+        true => ", less than the error of the model",
+        false => "",
+    };
     match named {
         Some((baseline, start)) if low <= high && low > 0.0 => format!(
-            "{subject} uses {} to {} % more than {baseline} at every temperature ({start})",
+            "{subject} uses {} to {} % more than {baseline} at every temperature ({start}){open}",
             grouped(low, 1),
             grouped(high, 1)
         ),

@@ -1,9 +1,10 @@
 //! Computed against measured fuel of many cars: a panel for each figure, a symbol for each group.
 
 use super::engine::{
-    Axis, BELOW, CONTEXT, Chart, Entry, LEFT, PLOT_LEFT, Panel, Rect, Style, Symbol, WIDTH, at,
-    grid, range, stroke,
+    Axis, BELOW, Chart, Entry, INK, Item, LEFT, PLOT_LEFT, Panel, Rect, Shape, Style, Symbol,
+    WIDTH, at, grid, range, stroke,
 };
+use super::fleet_groups::{band, repeat_percent};
 use super::picture::{Picture, PictureTable};
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::table::distinct;
@@ -31,7 +32,7 @@ const RADIUS: f64 = 3.4;
 /// Error of the thin lines.
 const THIN: f64 = 0.05;
 
-/// Draws computed over measured fuel, with the line of equality and lines 5 % above and below.
+/// Draws computed over measured fuel, with the line of equality, the band within which tests of equal cars repeat, and lines 5 % above and below.
 #[must_use]
 pub fn fleet_scatter(marks: &[FleetMark]) -> Picture {
     let figures = distinct(marks.iter().map(|mark| mark.figure.as_str()));
@@ -78,7 +79,7 @@ pub fn fleet_scatter(marks: &[FleetMark]) -> Picture {
         let (symbol, colour) = Symbol::nth(k);
         Entry::symbol(symbol, Symbol::filled(colour), *name)
     });
-    let note = "Thick line: computed = measured; thin lines: 5 % more and less. Equal cars repeat their tests within about 3 %.";
+    let note = "Thick line: computed = measured; band: tests of equal cars repeat within 2.8 % on FTP75 and 2.5 % on HWFET; dashed lines: 5 % more and less.";
     Chart::new(
         "Computed against measured fuel",
         rms(marks, &figures),
@@ -124,16 +125,32 @@ fn panel(rect: Rect, figure: &str, rows: &[(&FleetMark, usize)], groups: &[&str]
     };
     let mut panel = Panel::new(rect, axis("Measured"), axis("Computed"));
     let [from, to] = [low - room, high + room];
+    let share = repeat_percent(figure) / 100.0;
+    let corners = [
+        (from, (1.0 - share) * from),
+        (from, (1.0 + share) * from),
+        (to, (1.0 + share) * to),
+        (to, (1.0 - share) * to),
+    ];
+    let repeats = Item {
+        shape: Shape::Area(vec![corners.to_vec()]),
+        style: band(),
+    };
+    panel.add(Shape::Within(None, vec![repeats]), Style::default());
     for factor in [1.0 - THIN, 1.0 + THIN] {
         // Within the frame.
         let [left, right] = [from.max(from / factor), to.min(to / factor)];
         panel.segment(
             at(left, factor * left),
             at(right, factor * right),
-            Style::line(stroke("#777777", 0.5, &[])),
+            Style::line(stroke("#777777", 0.8, &[4.0, 3.0])),
         );
     }
-    panel.segment(at(from, from), at(to, to), Style::line(CONTEXT));
+    panel.segment(
+        at(from, from),
+        at(to, to),
+        Style::line(stroke(INK, 1.6, &[])),
+    );
     for (mark, row) in rows {
         let k = groups
             .iter()

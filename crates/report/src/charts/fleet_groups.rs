@@ -60,7 +60,7 @@ const MOST: usize = 30;
 const BAND: &str = "#d4dae6";
 
 /// The band that two tests of one car fill.
-fn band() -> Style {
+pub(super) fn band() -> Style {
     Style::fill(Fill::plain(BAND)).fill_opacity(0.7)
 }
 

@@ -29,7 +29,7 @@ pub use fleet_groups::{
 pub use levers::{foremost_levers, lever_strip, lever_title, saves};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
-pub use price::price_bars;
+pub use price::price_dots;
 pub use run::{
     LossBins, PlotRun, PublishedDrive, bin_losses, driveline, fuel_bars, group_fuel, logged,
     losses, operating_points, pressure, published_drive, temperatures,

@@ -1,5 +1,6 @@
 //! A picture with the table of its numbers, which also fills its tooltips.
 
+use super::engine::Chart;
 use crate::number::with_unit;
 
 /// A picture and its numbers.
@@ -8,8 +9,21 @@ pub struct Picture {
     /// The drawing. Where the first column of the table is the horizontal axis of a panel, its frame (`class="plot"`) has `data-x0` and
     /// `data-x1`, the values at its left and right edge; every other mark has `data-row`, the index of its row.
     pub svg: String,
+    /// The drawing for a narrow screen, made where it is wanted.
+    pub narrow: Narrow,
     /// The numbers.
     pub table: PictureTable,
+}
+
+/// The chart of a picture and its description in words, to be drawn for a narrow screen.
+#[derive(Clone, Debug, Default)]
+pub struct Narrow(pub(super) Option<(Box<Chart>, String)>);
+
+/// Pictures of the same drawing are the same.
+impl PartialEq for Narrow {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// The numbers of a picture.

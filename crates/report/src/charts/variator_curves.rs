@@ -2,7 +2,7 @@
 
 use super::engine::{
     Axis, BELOW, Chart, End, Entry, INK, LEFT, PLOT_LEFT, PUBLISHED, Palette, Panel, Point, Stroke,
-    Style, Symbol, WIDTH, ZERO, at, grid, label_ends, range, stroke,
+    Style, Symbol, WIDTH, ZERO, at, grid, range, stroke,
 };
 use super::picture::PictureTable;
 use super::printed::{THESIS_CAR, number};
@@ -397,6 +397,6 @@ fn draw(mut panel: Panel, of: Curves) -> Panel {
         })
     });
     let ends = ends.collect();
-    label_ends(&mut panel, ends);
+    panel.ends = ends;
     panel
 }

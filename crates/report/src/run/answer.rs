@@ -10,8 +10,8 @@ use crate::charts::{foremost_levers, lever_title, saves};
 use cvtcycle_analysis::answer::Answer;
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
-use cvtcycle_analysis::words::{decimals, of_cars};
+use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time, resolution_left};
+use cvtcycle_analysis::words::{decimals, fuel_ranges};
 use cvtcycle_output::summary::{
     Comparison, Contradiction, DrawnDifference, Over, RunSummary, Summary, UNCHANGED,
 };
@@ -56,7 +56,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
         .chain(
             failing
                 .iter()
-                .map(|words| format!("{words}. The ranges are those of the others.")),
+                .map(|words| match found.answer.as_ref().is_some_and(Answer::is_known) {
+                    true => format!("{words}. The ranges are those of the others."),
+                    false => format!("{words}. No range, price or change of the design is claimed: mend what fails first."),
+                }),
         )
         .chain(found.missing.iter().map(|line| capital_first(line) + "."))
     {
@@ -82,7 +85,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
                 foremost_levers(answer, block, OPTIONS.0),
             );
         }
-        None => section.text("Options: not computed for this case."),
+        None => section.text(match &found.answer {
+            Some(answer) if !answer.is_known() => "Options: no change of the design is compared with a car that fails in so many draws.",
+            _ => "Options: not computed for this case.",
+        }),
     }
     let own = found
         .studies
@@ -123,7 +129,9 @@ fn question(summary: &Summary, cycle: &str) -> String {
 
 /// Levers that were driven for this report, with the car named as in tables and figures.
 pub(super) fn computed_options(found: &RunResults) -> Options {
-    let mut answer = found.answer.as_ref()?.levers.clone();
+    // Draws in which a failing car happens to work are those of another car.
+    let answer = found.answer.as_ref().filter(|answer| answer.is_known());
+    let mut answer = answer?.levers.clone()?;
     if answer.blocks.is_empty() {
         return None;
     }
@@ -161,20 +169,16 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(_) => " (weighted)",
         None => "",
     };
-    let drawn = || {
-        let [low, _, high] = subject.drawn?;
-        let digits = decimals([low, high]);
-        let [low, high] = [low, high].map(|x| grouped(x, digits));
-        Some(format!(
-            " ({low} to {high} in 90 % of the runs with uncertain inputs varied)"
-        ))
-    };
-    let range = subject.fleet.as_ref().map(of_cars).or_else(drawn);
-    let range = range.unwrap_or_default();
+    let range = fuel_ranges(subject);
     let recording = summary.recording.as_ref();
     let doubt = recording.map_or_else(String::new, |own| doubtful("Doubtful", own));
+    let faults = subject.faults();
+    let failed = match faults.is_empty() {
+        true => String::new(),
+        false => format!("FAILED, {}. ", faults.join(", ")),
+    };
     let text = format!(
-        "{doubt}The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
+        "{doubt}{failed}The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
         subject.label()
     );
     // A change is compared with the car before it, then with the first other car.
@@ -321,6 +325,7 @@ fn checks(summary: &Summary) -> Vec<String> {
 fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     let failing = found.answer.as_ref().and_then(Answer::failures_in_words);
     let mut list: Vec<String> = failing.map(|words| words + ".").into_iter().collect();
+    list.extend(resolution_left(&found.summary));
     list.extend(doubts::cold(cars.get(..1).unwrap_or_default()));
     list.extend(found.validation.as_ref().map(validation::differing));
     let block = options.iter().map(|(_, block)| block);
@@ -359,7 +364,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let falls = falls.map(|own| {
         let ratio = |x: f64| Quantity::Ratio.text(Some(x));
         format!(
-            "lowest clamping safety in any run {}, {} without it (below 1 the belt slips)",
+            "lowest clamping safety of all runs {}, of the car as it is {} (below 1 the belt slips)",
             ratio(own.worst),
             ratio(own.reference_worst)
         )
@@ -375,7 +380,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let size = row.set_by.as_ref().filter(|of| of.share >= SIZE);
     let size = size.map(|of| {
         format!(
-            "what it saves is uncertain mostly by {} ({} % of the variance)",
+            "the largest part of the uncertainty of what it saves is {} ({} % of the variance)",
             of.factor,
             grouped(100.0 * of.share.min(1.0), 0)
         )
@@ -511,7 +516,7 @@ mod tests {
         let lowered = risk(&lever(1.05, 1.38, -0.67), 1874.0).unwrap();
         assert!(
             lowered.contains(
-                "lowest clamping safety in any run 1.05, 1.38 without it (below 1 the belt slips)"
+                "lowest clamping safety of all runs 1.05, of the car as it is 1.38 (below 1 the belt slips)"
             ),
             "{lowered}"
         );

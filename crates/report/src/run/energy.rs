@@ -57,25 +57,22 @@ pub(crate) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
     }
 }
 
-/// Sentence on the excess fuel of the subject over a baseline per kilometre, term by term.
+/// Sentence on the terms by which the fuel of the subject differs from that of a baseline per kilometre. It leaves their sum out, which has a range that is with the answer.
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
-    let energies = per_km(subject, baseline);
-    let difference = energies.fuel[0] - energies.fuel[1];
-    let mut terms = energies.terms;
+    let mut terms = per_km(subject, baseline).terms;
     terms.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
-    let kj = |x: f64| signed(grouped(x, 0), x);
     let large = terms.iter().filter(|(.., x)| x.abs() >= 0.5);
     let terms: Vec<String> = large
-        .map(|(name, _, x)| format!("{} {name}", kj(*x)))
+        .map(|(name, _, x)| format!("{} {name}", signed(grouped(*x, 0), *x)))
         .collect();
-    let more = if difference < 0.0 { "less" } else { "more" };
-    format!(
-        "Per kilometre {} burns {} kJ {more} than {}: {}.",
-        subject.run.label(),
-        grouped(difference.abs(), 0),
-        baseline.run.label(),
-        terms.join(", ")
-    )
+    let (subject, baseline) = (subject.run.label(), baseline.run.label());
+    match terms.is_empty() {
+        true => format!("No term differs by 0.5 kJ/km between {subject} and {baseline}."),
+        false => format!(
+            "Terms of {subject} against {baseline}, in kJ/km: {}.",
+            terms.join(", ")
+        ),
+    }
 }
 
 pub(super) fn section(cars: &[Car], conditions: &str) -> Section {

@@ -11,7 +11,7 @@ use crate::charts::figures::{
 };
 use crate::charts::{
     Picture, PlotRun, driveline, fuel_bars, group_fuel, logged, losses, operating_points, pressure,
-    price_bars, published_drive, temperatures,
+    price_dots, published_drive, temperatures,
 };
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
@@ -94,6 +94,7 @@ fn plot<'a>(car: &Car<'a>, summary: &Summary) -> Option<PlotRun<'a>> {
         fuel_map,
         group_fuel: group_fuel(car.run),
         fuel_unit: car.run.over().unit(),
+        fuel_energy_kj: car.run.fuel_energy_kj,
         published: published_drive(&car.run.vehicle, summary),
     })
 }
@@ -132,7 +133,7 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
         let caption = format!(
             "What each loss of {name} costs: the car driven again without it. The prices need not add up to that of all together."
         );
-        let picture = price_bars(car.run, name);
+        let picture = price_dots(car.run, name);
         (name.to_owned(), format!("price_{}", car.run.vehicle), caption, picture)
     });
     section.views("price", priced);
@@ -147,7 +148,7 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     let runs = traced.iter().filter_map(|car| plot(car, &found.summary));
     let runs: Vec<PlotRun> = runs.collect();
     if !runs.is_empty() {
-        let caption = "Loss power over time by group of parts, averaged over stretches of the cycle; one scale.";
+        let caption = "Energy that each group of parts has lost since the start, as fuel of that energy; one scale. Without the loss more is saved, for the engine makes that energy from fuel.";
         more.figure("losses", caption, losses(&runs));
     }
     section.more = more.blocks;

@@ -2,7 +2,6 @@
 
 use cvtcycle_analysis::answer::Answer;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
-use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
 use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
 
@@ -33,9 +32,11 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
 
 /// The section on levers that were driven for a report.
 pub fn computed(answer: &Answer, block: &LeverBlock) -> Section {
-    let mut levers = answer.levers.clone();
-    levers.blocks = vec![block.clone()];
     let mut section = Section::new("levers", "Levers");
+    let Some(mut levers) = answer.levers.clone() else {
+        return section;
+    };
+    levers.blocks = vec![block.clone()];
     let words = answer_in_words(&levers, block).into_iter();
     section.blocks.extend(words.map(Block::Text));
     let (draws, plan) = (answer.draws, &answer.plan);
@@ -161,6 +162,7 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
     let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
     let caption = format!("Levers, {}", case(block));
     let mut table = ReportTable::numeric(&caption, "Lever", columns);
+    let digits = block.decimals();
     let single = block.rows.iter().filter(|row| !row.is_combination());
     let together = block.rows.iter().filter(|row| row.is_combination());
     let shown = single.take(most.unwrap_or(usize::MAX)).chain(together);
@@ -170,8 +172,8 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
             failed => format!("{} (fails in {failed})", row.of.title),
         };
         match row.is_combination() {
-            true => table.strong(name, cells(answer, row)),
-            false => table.named(name, cells(answer, row)),
+            true => table.strong(name, cells(answer, row, digits)),
+            false => table.named(name, cells(answer, row, digits)),
         }
     }
     table.note = format!(
@@ -182,11 +184,11 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
     table
 }
 
-fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
+/// Cells of a row; all rows of a table have the same decimals.
+fn cells(answer: &LeverAnswer, row: &LeverRow, digits: usize) -> Vec<String> {
     let drawn = answer.plan.is_some() && row.n > 0;
     let [low, high] = [row.low_percent.value, row.high_percent.value];
-    // Digits beyond the interval are dropped.
-    let digits = if drawn { decimals([low, high]) } else { 2 };
+    let digits = if drawn { digits } else { 2 };
     let change = |x: f64| signed(grouped(x, digits), x);
     let of_draws = |x: f64| match drawn {
         true => change(x),

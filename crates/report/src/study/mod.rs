@@ -39,7 +39,7 @@ pub fn section(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<S
     section.blocks.splice(0..0, blocks);
     fold(
         &mut section,
-        &["ambient_fuel", "distribution_subject_excess_percent"],
+        &["ambient_penalty", "distribution_subject_excess_percent"],
     );
     if let Some((of, _)) = cause(study) {
         let title = &study.answer.title;

@@ -366,9 +366,7 @@ impl LivePage {
         let driven = drives.driven();
         let mut found = drives.summary(state, &driven);
         let Drives { wanted, cycle, .. } = &drives;
-        for (comparison, drawn) in found.comparison.iter_mut().zip(drawn.into_iter().flatten()) {
-            comparison.interval = Some(drawn);
-        }
+        found.take_drawn(drawn.unwrap_or_default());
         if *state == self.scene.state {
             found.contradicted.clone_from(&self.scene.contradicted);
         }

@@ -113,6 +113,7 @@ fn states() -> Vec<Column<Run>> {
         optional "min_clamp_safety", "-", "smallest clamp safety factor", (r, _) => r.min_clamp_safety;
         optional "at_ratio_limit_s", "s", "time at a ratio limit", (r, _) => r.at_ratio_limit_s;
         optional "ledger_error", "-", "largest ledger error of any row", (r, _) => r.ledger_error;
+        optional "step_error_percent", "%", "estimate of the error of the fuel by the length of the steps", (r, _) => r.step_error_percent;
         number "solve_residual", "-", "largest residual of the implicit solve", (r, _) => r.solve.worst_residual;
         optional "evaluations_per_step", "-", "mean evaluations of the driveline a row", (r, _) => r.solve.evaluations_per_step;
     };

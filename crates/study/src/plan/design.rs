@@ -242,9 +242,13 @@ pub(super) fn reach(plan: &Plan) -> Problems {
             let hint = "name them in `baselines`, or remove the factor";
             problems.push(of_factor(Conflict, factor, "cars", message, hint));
         }
-        let (Some(bound), FactorValues::Distribution(_), Some((low, high))) =
-            (keys::range(&factor.key), &factor.values, plan.span(k))
+        let (Some(bound), FactorValues::Distribution(_)) =
+            (keys::range(&factor.key), &factor.values)
         else {
+            continue;
+        };
+        // Looks through all samples: only for the options of a run, which have a range.
+        let Some((low, high)) = plan.span(k) else {
             continue;
         };
         if !(bound.contains(low) && bound.contains(high)) {

@@ -317,6 +317,7 @@ fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> TransmissionState {
         dt_s: 1.0,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // before it begins
     })
 }
 

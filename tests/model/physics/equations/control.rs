@@ -32,6 +32,7 @@ fn control() -> RatioControl {
 
 fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
     RatioDemand {
+        begins: None,
         secondary_rad_s,
         primary_rad_s: before * secondary_rad_s,
         speed_m_s: 10.0,
@@ -44,6 +45,7 @@ fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        locks_at: 1.0,
         last_direction: 0,
         free_up_to_rad_s: 0.0,
         dt_s: 0.5,
@@ -143,13 +145,23 @@ fn val_filtered_demand_by_hand() {
     // One second in steps of 1, 1/2 and 1/10 s with 2 s of time constant: 1 - exp(-1/2) of the way.
     for steps in [1, 2, 10] {
         let dt_s = 1.0 / f64::from(steps);
-        let share = (0..steps).fold(0.1, |u, _| filter(2.0).filtered_share(u, 0.5, dt_s));
+        let share = (0..steps).fold(0.1, |u, _| filter(2.0).filtered_share(u, [0.5; 2], dt_s));
         assert!(
             (share - (0.1 + 0.4 * 0.393_469_340_287)).abs() < 1e-10,
             "{share}"
         );
     }
-    same(filter(0.0).filtered_share(0.1, 0.5, 1e-3), 0.5);
+    same(filter(0.0).filtered_share(0.1, [0.3, 0.5], 1e-3), 0.5);
+    // A demand that rises in a line: as many steps of any length give the same.
+    let rising = |steps: u32| {
+        let at = |k: u32| 0.1 + 0.4 * f64::from(k) / f64::from(steps);
+        let dt_s = 1.0 / f64::from(steps);
+        (0..steps).fold(0.1, |u, k| {
+            filter(2.0).filtered_share(u, [at(k), at(k + 1)], dt_s)
+        })
+    };
+    same(rising(1), 0.5 - 0.8 * (1.0 - (-0.5_f64).exp()));
+    same(rising(1), rising(7));
     let sudden = RatioDemand {
         share: 0.02,
         full_load_rad_s: 420.0,
@@ -168,7 +180,10 @@ fn val_filtered_demand_by_hand() {
 #[test]
 fn val_shift_by_hand() {
     let c = control();
-    let step = |d: RatioDemand| c.step(&d);
+    let step = |d: RatioDemand| {
+        let way = c.step(&d);
+        (way.end, way.change, way.held)
+    };
     let check = |d: RatioDemand, change: f64, held: bool| {
         let got = step(d);
         same(got.1, change);
@@ -253,7 +268,10 @@ fn val_shift_by_hand() {
         rate_speed_rad_s: 400.0,
         ..control()
     };
-    same(slow.step(&demand(0.15, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
+    same(
+        slow.step(&demand(0.15, 300.0, 1.0)).change,
+        -0.35 * 0.75 * 0.5,
+    );
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
@@ -476,7 +494,8 @@ fn val_hysteresis_by_hand() {
         (1, 1.8 * 1.06, true),
         (-1, 1.8 * 1.04, true),
     ] {
-        let (ratio, change, _) = step(last, before);
+        let way = step(last, before);
+        let (ratio, change) = (way.end, way.change);
         same(ratio, if moves { 1.8 } else { before });
         same(change, if moves { (1.8 / before).ln() } else { 0.0 });
     }
@@ -485,13 +504,13 @@ fn val_hysteresis_by_hand() {
         free_up_to_rad_s: 190.0,
         ..demand(0.15, 100.0, 1.8 / 1.04)
     };
-    same(c.step(&slow).0, 1.8);
+    same(c.step(&slow).end, 1.8);
     let low = RatioDemand {
         last_direction: -1,
         free_up_to_rad_s: 90.0,
         ..demand(0.15, 70.0, 2.35) // towards 2.57, held at the end
     };
-    same(c.step(&low).0, 2.4);
+    same(c.step(&low).end, 2.4);
 }
 
 /// A target at which full load has a quarter more than the power asked for is not below the route, so that RC-3 need not be worked out there: cars,

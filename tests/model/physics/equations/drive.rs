@@ -336,7 +336,7 @@ fn flags(x: &Solved, bind: Bind, gross: bool, capacity_nm: f64) {
     let carries = primary_nm.abs() > 1e-7 * x.engine.full_load_nm(d.engine_rad_s);
     let settled = |flag: Flags, on: bool| if carries { on } else { d.flags.contains(flag) };
     let want = [
-        (Flags::MISSED_TRACE, bind == Bind::FullLoad),
+        (Flags::FULL_LOAD, bind == Bind::FullLoad),
         (Flags::GROSS_SLIP, gross),
         (Flags::LOW_CLAMP, capacity_nm < x.secondary_nm.abs()),
         (

@@ -198,6 +198,7 @@ fn val_fuel_cut_by_hand() {
     ] {
         let running = Running {
             speed_rad_s: rpm * PI / 30.0,
+            end_rad_s: rpm * PI / 30.0,
             ..Running::LONG
         };
         let k = degc + ZERO;

@@ -204,12 +204,14 @@ fn val_rows_make_a_map() {
     ] {
         same(map.fuel_pa[i][j], g_kwh / 3.6e9 * bar * BAR * 43e6);
     }
-    // Neighbours in the ninth digit are one value, in the eighth they are two.
+    // Points that fill a grid but for the rounding of five figures are a grid; others are not.
     let mut close = good;
     close[2].0 = 100.0 * (1.0 + 0.9e-9);
     close[0].1 = 6.0 * BAR * (1.0 - 0.9e-9);
     assert_eq!(made(&close).unwrap().fuel_pa[0].len(), 2);
-    close[2].0 = 100.0 * (1.0 + 2e-9);
+    close[2].0 = 100.0 * (1.0 + 0.9e-4);
+    assert_eq!(made(&close).unwrap().speed_rad_s.len(), 2);
+    close[2].0 = 100.0 * (1.0 + 2e-4);
     assert_eq!(made(&close).unwrap().speed_rad_s.len(), 3);
     for rows in [&good[..3], &good[1..3], &[good[1], good[3]][..]] {
         assert!(

@@ -176,9 +176,14 @@ fn val_palmgren() {
     );
     same(at(&b, &cold, w, 1999.0), at(&b, &cold, w, 1.0));
     // Two of them at six times the factor, each with its own film.
-    let pair = Bearing { count: 2.0, ..b };
+    let pair = Bearing {
+        count: 2.0,
+        preload_nm: 1.0,
+        ..b
+    };
     let more = BearingFactors {
         unloaded: 6.0,
+        preload: 0.0,
         ..FACTORS
     };
     let unheated = 12.0 * plain;
@@ -187,6 +192,8 @@ fn val_palmgren() {
         2.0 * unheated / (1.0 + (1.0 + 4.0 * unheated * w / 800.0).sqrt()),
         1e-9,
     );
+    // The factor holds what preload adds: it does not act where there is none.
+    same(at(&b, &more, w, 27_500.0), at(&b, &FACTORS, w, 27_500.0));
 }
 
 /// BR-2: all of the preload's friction at rest, a third of it on a full film, and the weighting in between; its power rises with speed.
@@ -558,16 +565,17 @@ fn val_final_drive_in_the_cold() {
     }
     let warm = train.turning(4100.0 * RPM, 0.0, oil(80.0));
     near(1.0 - warm.mesh_share, 0.9877, 5e-4);
-    near(warm.no_load_nm(), 0.560, 0.01);
+    near(warm.no_load_nm(), 0.603, 0.01);
     near(
         train.turning(4100.0 * RPM, 0.0, oil(-10.0)).no_load_nm(),
-        3.001,
+        2.769,
         0.01,
     );
 }
 
-/// Outside truth: hot losses of manual boxes by class, 0.925 Nm + 0.000407 Nm/rpm for 145 Nm at the input (CO2MPAS), 1.1 times that for the
-/// Mondeo. Textbook parts grow less with speed than the published line. Cold over hot is published as 1.32 at 40 degC and below.
+/// Outside truth: losses of manual boxes by class, hot at 80 degC 0.925 Nm + 0.000407 Nm/rpm and cold, at 40 degC, 1.323 Nm + 0.000485 Nm/rpm for
+/// 145 Nm at the input (CO2MPAS), 1.1 times that for the Mondeo; with the bearings' factor of the final drive of the CVT. Churning grows less with
+/// speed than the published lines.
 #[test]
 fn val_manual_boxes_without_load() {
     for (name, times) in [("rover_216_5mt", 1.0), ("mondeo_20_5mt", 1.1)] {
@@ -584,15 +592,15 @@ fn val_manual_boxes_without_load() {
                 / 3.0
         };
         let mut over = 0.0;
-        for rpm in [1000.0, 2000.0, 3000.0, 4000.0] {
-            let ratio = mean(rpm, 80.0) / (times * (0.925 + 0.000_407 * rpm));
-            println!("{name} at {rpm} rpm: {ratio:.3} of the published line");
-            assert!((ratio - 1.0).abs() < 0.25, "{name} {rpm}: {ratio}");
-            over += 0.25 * ratio;
+        for (degc, nm, nm_per_rpm) in [(80.0, 0.925, 0.000_407), (40.0, 1.323, 0.000_485)] {
+            for rpm in [1000.0, 2000.0, 3000.0, 4000.0] {
+                let ratio = mean(rpm, degc) / (times * (nm + nm_per_rpm * rpm));
+                println!("{name} at {degc} degC, {rpm} rpm: {ratio:.3} of the published line");
+                assert!((ratio - 1.0).abs() < 0.25, "{name} {degc} {rpm}: {ratio}");
+                over += 0.125 * ratio;
+            }
         }
         assert!((over - 1.0).abs() < 0.10, "{name}: {over}");
-        let cold = mean(2000.0, 20.0) / mean(2000.0, 80.0);
-        assert!((1.3..1.6).contains(&cold), "{name}: {cold}");
         // Loss under load: two meshes and their bearings.
         for (gear, train) in box_.trains.iter().enumerate() {
             let oil = setup.oils().0.state(80.0 + ZERO);

@@ -13,6 +13,7 @@ use cvtcycle_model::engine::Running;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
+use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
 #[track_caller]
@@ -76,12 +77,23 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     if c.running.since_s == 0.0 {
         c.running.start_k = t[COOLANT];
     }
-    // EN-11 looks at a speed that has fallen as that of the wheels, in a box with gears.
+    // EN-11 looks at both ends of the step: with gears the wheels have the speed of the engine, a CVT holds it up to that in its lowest gear.
     let wheel_rad_s = row.speed_m_s / car.road_load.wheel_radius_m;
-    if wheel_rad_s < c.running.wheel_rad_s && !car.transmission.is_cvt() {
-        c.running.speed_rad_s *= wheel_rad_s / c.running.wheel_rad_s;
-    }
-    c.running.wheel_rad_s = wheel_rad_s;
+    let half_rad_s = 0.5 * row.accel_m_s2 * dt / car.road_load.wheel_radius_m;
+    c.running.end_rad_s = match &car.transmission {
+        Transmission::Cvt(cvt) => {
+            let lowest = cvt.ratio.low * cvt.final_drive.ratio;
+            c.running
+                .speed_rad_s
+                .min(lowest * (wheel_rad_s + half_rad_s).max(0.0))
+        }
+        Transmission::Manual(manual) => {
+            let gear = usize::from(row.gear).checked_sub(1);
+            let overall = gear.map_or(0.0, |gear| manual.overall[gear]);
+            c.running.speed_rad_s = overall * (wheel_rad_s - half_rad_s).max(0.0);
+            overall * (wheel_rad_s + half_rad_s).max(0.0)
+        }
+    };
     let now = car.engine.in_step(
         t[COOLANT],
         t[ENGINE_OIL],
@@ -95,11 +107,11 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     } else {
         Running {
             since_s: c.running.since_s + dt,
-            speed_rad_s: w,
+            speed_rad_s: row.engine_end_rad_s,
             ..c.running
         }
     };
-    let begun = 0.5 * car.engine.inertia_kg_m2 * w * w;
+    let begun = 0.5 * car.engine.inertia_kg_m2 * row.engine_end_rad_s * row.engine_end_rad_s;
     let accessories = now.accessories_nm(w);
     close(row.accessories_w, accessories * w, 1e3, place);
     let (to_coolant, to_oil);
@@ -117,13 +129,26 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     } else {
         let steady = row.engine_torque_nm + accessories;
         let wanted = (begun - c.kinetic_j) / dt / w;
-        let torque = if wanted > 0.0 {
+        // In overrun the brakes give it, what they have (SI-5).
+        let lags = row.kinetic_w < wanted * w * (1.0 - 1e-9);
+        let room_w = (now.full_load_nm(w) - steady).max(0.0).min(wanted.max(0.0)) * w;
+        let fired = row.brake_w <= 0.0 && (row.kinetic_w - room_w).abs() <= 1e-6 * (1.0 + room_w);
+        let overruns = row.engine_torque_nm < 0.0 && wanted > 0.0;
+        let by_brakes = overruns && !fired && (row.brake_w > 0.0 || lags);
+        let torque = if by_brakes {
+            0.0
+        } else if wanted > 0.0 {
             (now.full_load_nm(w) - steady).max(0.0).min(wanted)
         } else {
             (-(steady + now.own_drag_nm(w))).max(wanted).min(0.0)
         }; // SI-2
         let over = if wanted < 0.0 { torque - wanted } else { 0.0 }; // SI-4
-        close(row.kinetic_w, (torque - over) * w, 1e4, place); // SI-1
+        let kinetic_w = match (by_brakes, row.brake_w > 0.0) {
+            (true, true) => wanted * w,
+            (true, false) => row.kinetic_w,
+            (false, _) => (torque - over) * w,
+        };
+        close(row.kinetic_w, kinetic_w, 1e4, place); // SI-1
         c.kinetic_j += row.kinetic_w * dt;
         let burn = now.burn(w, steady + torque);
         close(row.fuel_kg_s, burn.fuel_kg_s, 1e-3, place);

@@ -15,7 +15,7 @@ use cvtcycle_model::road::WheelDemand;
 use cvtcycle_model::thermal::{Heat, NODES};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::Coupling;
-use cvtcycle_model::transmission::cvt::controller::RatioDemand;
+use cvtcycle_model::transmission::cvt::controller::{Moment, RatioDemand, Shifted};
 use cvtcycle_model::transmission::cvt::pump::PumpKind;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, Geometry};
 use cvtcycle_model::transmission::cvt::{Cvt, CvtState};
@@ -28,7 +28,7 @@ fn shifted(
     wheel: &WheelDemand,
     past_pa: f64,
     sump_degc: f64,
-) -> (StepOutput, RatioDemand) {
+) -> (StepOutput, RatioDemand, f64) {
     let (cvt, car) = (cvt_car.cvt(), &cvt_car.car);
     let k = sump_degc + ZERO;
     let engine = car.engine.at(k, k, &car.engine_oil, 0.8);
@@ -42,6 +42,7 @@ fn shifted(
         dt_s: 0.5,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, from)));
@@ -60,29 +61,39 @@ fn shifted(
         .drawn_m3_s(cvt.pump.displacement_m3_rad * d.engine_rad_s);
     let free = (drawn - cvt.pump.steady_need_m3_s(d.secondary_pa, eta)).max(0.0);
     let (down, up) = volumes(cvt, from);
+    let secondary_rad_s = cvt.final_drive.ratio * wheel.wheel_rad_s;
+    let full_load_rad_s =
+        super::route_rad_s(cvt, &engine, wheel.power_w / cvt.ratio.route_efficiency);
     let demand = RatioDemand {
-        secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
+        // From nothing before (RC-9).
+        begins: Some(Moment {
+            secondary_rad_s,
+            speed_m_s: wheel.speed_m_s,
+            power_w: wheel.power_w,
+            share: 0.0,
+            full_load_rad_s,
+            mapped_rad_s: None,
+        }),
+        secondary_rad_s,
         primary_rad_s: from * cvt.final_drive.ratio * wheel.wheel_rad_s,
         speed_m_s: wheel.speed_m_s,
         power_w: wheel.power_w,
         // From nothing before, half a second of the filter (RC-9).
         share: wheel.power_w / car.engine.rated_w * (1.0 - (-0.5 / cvt.ratio.filter_s).exp()),
-        full_load_rad_s: super::route_rad_s(
-            cvt,
-            &engine,
-            wheel.power_w / cvt.ratio.route_efficiency,
-        ),
+        full_load_rad_s,
         mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: from,
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,
         coupled: true,
+        locks_at: 0.0,
         last_direction: 0,
         free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     };
-    (d, demand)
+    let end = state.cvt.map_or(f64::NAN, |own| own.shifting.ratio);
+    (d, demand, end)
 }
 
 /// PU-3: oil for a unit of ln I, from differences of the running radii, m3: secondary cylinder towards low, primary towards high.
@@ -137,53 +148,76 @@ fn val_shift_of_the_shipped_box() {
                     power_w: power,
                     ..WheelDemand::default()
                 };
-                let (d, demand) = shifted(&b, from, &wheel, pa, degc);
+                let (d, demand, end) = shifted(&b, from, &wheel, pa, degc);
                 let k = degc + ZERO;
                 let engine = b.car.engine.at(k, k, &b.car.engine_oil, 0.8);
                 // No update of the struct in the closure: the compiler's borrow checker fails on fields that are `R`'s own types (rustc 1.95).
                 let route = |efficiency: f64| {
                     let mut asked: RatioDemand = demand;
-                    asked.full_load_rad_s =
-                        super::route_rad_s(b.cvt(), &engine, power / efficiency);
+                    let rad_s = super::route_rad_s(b.cvt(), &engine, power / efficiency);
+                    asked.full_load_rad_s = rad_s;
+                    asked.begins = asked.begins.map(|mut begins| {
+                        begins.full_load_rad_s = rad_s;
+                        begins
+                    });
                     b.cvt().ratio.step(&asked)
                 };
                 // RC-7: the ratio of RC-3 where it suffices, else as much more as full load needs, else all that the rates allow.
                 let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
                 let plain = route(b.cvt().ratio.route_efficiency);
-                let again = (d.belt_ratio / plain.0 - 1.0).abs() > FLOW;
-                let missed = d.flags.contains(Flags::MISSED_TRACE);
-                let (ratio, change, short) = if missed {
-                    route(0.4)
-                } else if again {
-                    // An oil flow that bounds it bounds it still.
-                    let change = (d.belt_ratio / from).ln();
-                    let bound = change >= 0.5 * demand.flow_down_per_s * (1.0 - FLOW);
-                    (d.belt_ratio, change, bound)
-                } else {
-                    plain
-                };
-                let change = if short {
-                    (d.belt_ratio / from).ln()
-                } else {
-                    change
-                };
+                let again = (d.belt_ratio / plain.mean - 1.0).abs() > FLOW;
+                let missed = d.flags.contains(Flags::FULL_LOAD);
+                let all = route(0.4);
+                let own = (end / from).ln();
+                let way: Shifted =
+                    if missed && again && (d.belt_ratio / all.mean - 1.0).abs() < FLOW {
+                        all
+                    } else if again {
+                        // An oil flow that bounds it bounds it still.
+                        Shifted {
+                            mean: d.belt_ratio,
+                            end,
+                            change: own,
+                            held: own >= 0.5 * demand.flow_down_per_s * (1.0 - FLOW),
+                        }
+                    } else {
+                        plain
+                    };
+                let (ratio, short) = (way.mean, way.held);
+                let change = if short { own } else { way.change };
+                // Solved to its share of the flow also where the target is met within the step at a rate that the flow bounds.
+                let freely = b.cvt().ratio.step(&RatioDemand {
+                    flow_down_per_s: f64::INFINITY,
+                    flow_up_per_s: f64::INFINITY,
+                    ..demand
+                });
+                let is_bounded = short || (freely.mean - plain.mean).abs() > 0.0;
                 assert!(
-                    (d.belt_ratio / ratio - 1.0).abs() < if short { FLOW } else { 1e-9 },
+                    (d.belt_ratio / ratio - 1.0).abs() < if is_bounded { FLOW } else { 1e-9 },
                     "{place}"
                 );
-                if again && !missed {
+                // A bounded shift that meets its target all the same is slower by some of the flow that the shift at once would have had.
+                let is_met = is_bounded && (end / plain.end - 1.0).abs() < 1e-9;
+                if is_met {
+                    let most = 0.5 * demand.flow_down_per_s.max(demand.flow_up_per_s);
+                    assert!(own.abs() <= most * (1.0 + FLOW), "{place}");
+                } else if again && !missed {
                     // No more speed than full load needs, but for losses that fall as torque does.
                     let needed = (0.95..=1.0).contains(&d.throttle);
-                    assert!(d.belt_ratio > plain.0 && needed, "{place}");
+                    assert!(d.belt_ratio > plain.mean && needed, "{place}");
                 }
                 let without = b
                     .cvt()
                     .ratio
                     .step(&RatioDemand {
+                        begins: demand.begins.map(|begins| Moment {
+                            full_load_rad_s: 0.0,
+                            ..begins
+                        }),
                         full_load_rad_s: 0.0,
                         ..demand
                     })
-                    .0;
+                    .mean;
                 kicked += i32::from(again && !missed);
                 routed += i32::from(!again && (ratio / without - 1.0).abs() > 1e-3);
                 let (down, up) = volumes(b.cvt(), from);
@@ -249,6 +283,7 @@ fn after(
         dt_s,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = b.car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&b.cvt().belt, 1.0)));
@@ -346,6 +381,7 @@ fn an_engine_at_rest_turns_nothing() {
         dt_s: 1.0,
         engine_off: true,
         neutral_share: 0.0,
+        kinetic_j: f64::NAN, // a CVT does not read it
     };
     let mut state = car.transmission.start(&around);
     let Transmission::Cvt(cvt) = &car.transmission else {
@@ -412,10 +448,10 @@ fn effort(name: &str, sets: &[&str], cycle_name: &str, degc: f64) -> (u32, u16, 
 fn evaluations_of_the_solve() {
     let loaded: &[&str] = &["road_load.payload_kg=900"];
     let frozen = [
-        (CARS[0], &[][..], "ece15_eudc", -10.0, 2797, 8),
-        (CARS[0], &[], "ftp75", 25.0, 5764, 9),
-        (CARS[0], &[], "hill", 60.0, 382, 7),
-        (CARS[0], loaded, "us06", 25.0, 2363, 17),
+        (CARS[0], &[][..], "ece15_eudc", -10.0, 2832, 8),
+        (CARS[0], &[], "ftp75", 25.0, 5814, 10),
+        (CARS[0], &[], "hill", 60.0, 394, 7),
+        (CARS[0], loaded, "us06", 25.0, 2598, 77),
         (CARS[1], &[], "hill", 20.0, 208, 1),
     ];
     let got = frozen.map(|(name, sets, cycle, degc, ..)| {

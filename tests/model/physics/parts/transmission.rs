@@ -346,6 +346,7 @@ fn control() -> RatioControl {
 
 fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
     RatioDemand {
+        begins: None,
         secondary_rad_s: secondary,
         primary_rad_s: before * secondary,
         speed_m_s: 10.0,
@@ -358,6 +359,7 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        locks_at: 1.0,
         last_direction: 0,
         free_up_to_rad_s: 0.0,
         dt_s: 1.0,
@@ -372,19 +374,23 @@ fn val_variogram() {
     assert!((c.target_rad_s(&demand(100.0, 6.15e3, 1.0)) / RPM - 1600.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, 41e3, 1.0)) / RPM - 3100.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, -5e3, 1.0)) / RPM - 1500.0).abs() < 1e-9);
-    assert!((c.step(&demand(0.0, 0.0, 1.3)).0 - 1.3).abs() < 1e-15);
+    assert!((c.step(&demand(0.0, 0.0, 1.3)).end - 1.3).abs() < 1e-15);
 }
 
 #[test]
 fn shift_rate_is_limited_and_says_when_flow_does_it() {
     let c = control();
     let fast = c.step(&demand(400.0, 5e3, 1.0));
-    assert!(((1.0 / fast.0).ln() - 0.35).abs() < 1e-9 && !fast.2);
+    assert!(((1.0_f64 / fast.end).ln() - 0.35).abs() < 1e-9 && !fast.held);
     let slow = c.step(&RatioDemand {
         flow_up_per_s: 0.1,
         ..demand(400.0, 5e3, 1.0)
     });
-    assert!(((1.0 / slow.0).ln() - 0.1).abs() < 1e-9 && (slow.1 + 0.1).abs() < 1e-12 && slow.2);
+    assert!(
+        ((1.0_f64 / slow.end).ln() - 0.1).abs() < 1e-9
+            && (slow.change + 0.1).abs() < 1e-12
+            && slow.held
+    );
 }
 
 #[test]

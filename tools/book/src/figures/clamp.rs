@@ -18,6 +18,7 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
     let rated_w = r.cvt_car.car(298.15).engine.rated_w;
     let power_w = share * rated_w;
     RatioDemand {
+        begins: None,
         secondary_rad_s: 0.0,
         primary_rad_s: 0.0,
         speed_m_s: 0.0,
@@ -30,6 +31,7 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        locks_at: 0.0,
         last_direction: 0,
         free_up_to_rad_s: 0.0,
         dt_s: 1.0,

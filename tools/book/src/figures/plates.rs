@@ -19,7 +19,7 @@ pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
 }
 
 /// Colour and dashes of a line, one for each fluid.
-const LINES: [(&str, &str); 7] = [
+const LINES: [(&str, &str); 8] = [
     (colour::INK, ""),
     (colour::FORCE, ""),
     (colour::BLUE, ""),
@@ -27,6 +27,7 @@ const LINES: [(&str, &str); 7] = [
     (colour::FORCE, "6 4"),
     (colour::BLUE, "6 4"),
     (colour::GREEN, "6 4"),
+    (colour::INK, "6 4"),
 ];
 /// Corners of the axes, pixels: left, right, bottom, top.
 const AXES: [f64; 4] = [52.0, 388.0, 330.0, 34.0];
@@ -45,12 +46,19 @@ fn place(degc: f64, nu: f64) -> (f64, f64) {
     )
 }
 
+/// Shipped fluids, of those with one line the first.
 fn fluids() -> Result<Vec<(&'static str, Lubricant)>, String> {
-    let read = |name: &'static str| {
-        let oil = load_lubricant(name).map_err(|problems| render(&problems, false))?;
-        Ok((name, oil.0))
-    };
-    Kind::Lubricant.names().into_iter().map(read).collect()
+    let mut fluids: Vec<(&'static str, Lubricant)> = Vec::new();
+    for name in Kind::Lubricant.names() {
+        let (oil, _) = load_lubricant(name).map_err(|problems| render(&problems, false))?;
+        let line = |oil: &Lubricant| {
+            [40.0, 100.0].map(|degc| oil.kinematic_m2_s(degc + ZERO_DEGC_K).to_bits())
+        };
+        if fluids.iter().all(|(_, other)| line(other) != line(&oil)) {
+            fluids.push((name, oil));
+        }
+    }
+    Ok(fluids)
 }
 
 fn viscosity() -> Result<String, String> {

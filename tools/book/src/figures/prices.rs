@@ -8,7 +8,7 @@ use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::summary::{Driven, RunSummary, Settings, run_summary};
-use cvtcycle::report::charts::price_bars;
+use cvtcycle::report::charts::price_dots;
 use std::fmt::Write as _;
 
 const CAR: &str = "rover_216_cvt";
@@ -94,5 +94,5 @@ pub fn picture_and_table() -> Result<(String, String), String> {
         let _ = write!(text, " | {} | |", signed(price.interaction.percent, 2));
     }
     let subject = format!("{CAR}, {} \u{b0}C", AT[0]);
-    Ok((price_bars(&runs[0], &subject).svg, text + "\n"))
+    Ok((price_dots(&runs[0], &subject).svg, text + "\n"))
 }

@@ -107,6 +107,14 @@ const WORDS: &[(&str, &str)] = &[
     ("crankshaft_speed", "speed"),
     ("t", "torque"),
     ("m", "torque"),
+    ("md", "torque"),
+    ("drehmoment", "torque"),
+    ("motordrehmoment", "torque"),
+    ("drehzahl", "speed"),
+    ("motordrehzahl", "speed"),
+    ("kraftstoffverbrauch", "fuel"),
+    ("couple", "torque"),
+    ("regime", "speed"),
     ("trq", "torque"),
     ("tq", "torque"),
     ("engine_torque", "torque"),
@@ -174,6 +182,7 @@ pub(super) fn columns() -> Vec<Column> {
         };
         match gives {
             Gives::Fuel(_) => column.or_empty(),
+            Gives::Load(Load::Bmep) => column.spare(),
             _ => column,
         }
     };

@@ -5,7 +5,9 @@ use crate::Problem;
 use crate::problem::near::suggest;
 
 /// Years of engines.
-const YEARS: std::ops::RangeInclusive<u16> = 1980..=2035;
+const YEARS: std::ops::RangeInclusive<u16> = 1980..=2030;
+/// Years behind the newest set of a technology from which a year has its note: engines of one design are built for some ten years.
+const LATER: u16 = 10;
 
 /// A class of an engine, with what there is to say of the choice.
 pub(super) struct EngineClass {
@@ -117,7 +119,16 @@ pub(super) fn class(answers: &Answers) -> Result<Option<EngineClass>, Problem> {
             );
             (newest.1, Some(note))
         }
-        (Some(_), Some((_, class))) => (*class, None),
+        (Some(year), Some((from, class))) => {
+            let is_late = *class == newest.1 && year > from + LATER;
+            let note = || {
+                format!(
+                    "engine: {class} is the newest of its kind, and of engines {} years older than {year}: those of {year} may burn less",
+                    year - from
+                )
+            };
+            (*class, is_late.then(note))
+        }
         (Some(year), None) => {
             let note = format!(
                 "engine: {} is the oldest of its kind, and newer than {year}",

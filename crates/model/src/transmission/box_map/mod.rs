@@ -171,18 +171,36 @@ pub fn points(table: &FileRows, idle_nm: Option<f64>) -> Result<Vec<Point>, NoMa
         x
     };
     let of = |name: &str| table.position(name);
+    let with = |value: usize| {
+        let mut rows: Vec<Point> = table.rows.iter().map(|row| (at(row), row[value])).collect();
+        if speed_ratio.is_some() || output_speed.is_some() {
+            join_ratios(&mut rows);
+        }
+        rows
+    };
     if let Some(loss) = of("torque_loss_nm") {
-        let rows = table.rows.iter();
-        return Ok(rows.map(|row| (at(row), row[loss])).collect());
+        return Ok(with(loss));
     }
     if let Some(power) = of("power_loss_w") {
-        let rows = table.rows.iter().map(|row| (at(row), row[power]));
-        return of_power(rows.collect(), axes[1].is_some());
+        return of_power(with(power), axes[1].is_some());
     }
     let share = of("efficiency_percent").unwrap_or_default();
-    let rows = table.rows.iter().map(|row| (at(row), row[share]));
-    of_efficiency(rows.collect(), axes[OF_TORQUE].is_some(), idle_nm)
+    of_efficiency(with(share), axes[OF_TORQUE].is_some(), idle_nm)
 }
+
+/// Computed ratios that differ by the rounding of the speeds become one, the lowest of them.
+fn join_ratios(rows: &mut [Point]) {
+    let mut ratios: Vec<f64> = rows.iter().map(|(x, _)| x[0]).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup_by(|a, b| (*a - *b).abs() <= SAME_RATIO * b.abs());
+    for (x, _) in rows {
+        let place = ratios.partition_point(|own| *own <= x[0]);
+        x[0] = ratios[place.saturating_sub(1)];
+    }
+}
+
+/// Ratios of speeds in whole revolutions a minute that differ by less are one.
+const SAME_RATIO: f64 = 1e-3;
 
 /// A ratio without the last digits of its rounding, by which one ratio would be several.
 fn rounded(ratio: f64) -> f64 {

@@ -143,6 +143,8 @@ fn holds<R: Real>(devices: &R::PerLane<Device>, now: &LockSignals<R>, past: R::M
             sump_k: now.sump_k.lane(lane),
             output_rad_s: now.output_rad_s.lane(lane),
             idle_rad_s: now.idle_rad_s.lane(lane),
+            faster_rad_s: now.faster_rad_s.lane(lane),
+            dt_s: now.dt_s,
         };
         one::<R>(devices, lane).hold(&now, past.lane(lane))
     };
@@ -150,6 +152,8 @@ fn holds<R: Real>(devices: &R::PerLane<Device>, now: &LockSignals<R>, past: R::M
         coupled: like.mask_lanes(|lane| hold(lane).coupled),
         locked_from_rad_s: like.map_lanes(|lane| hold(lane).locked_from_rad_s),
         slip_rad_s: like.map_lanes(|lane| hold(lane).slip_rad_s),
+        closing_rad_s: like.map_lanes(|lane| hold(lane).closing_rad_s),
+        left_share: like.map_lanes(|lane| hold(lane).left_share),
     }
 }
 

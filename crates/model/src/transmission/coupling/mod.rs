@@ -117,6 +117,11 @@ pub struct LockSignals<R: Real = f64> {
     pub output_rad_s: R,
     /// Idle speed of the engine, rad/s.
     pub idle_rad_s: R,
+    /// Speed by which the engine is faster than the box's input shaft at the beginning of the step, rad/s: where the clutch is closing what was left of
+    /// it, else as it is.
+    pub faster_rad_s: R,
+    /// Length of the step, s.
+    pub dt_s: f64,
 }
 
 /// How a coupling holds engine and box together in a step, decided before it.
@@ -128,6 +133,10 @@ pub struct Hold<R: Real = f64> {
     pub locked_from_rad_s: R,
     /// Speed by which the engine is faster where it is locked, rad/s.
     pub slip_rad_s: R,
+    /// What is left at the end of the step of the speed by which it was faster when the clutch began to close, rad/s (TC-9).
+    pub closing_rad_s: R,
+    /// Speed by which the engine is faster at the end of the step over its mean; 1 where nothing closes.
+    pub left_share: R,
 }
 
 /// The speeds around a coupling, rad/s.
@@ -185,6 +194,8 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
             coupled: past,
             locked_from_rad_s: past.select(self.locked_from_rad_s(idle_rad_s), never),
             slip_rad_s: idle_rad_s.splat(0.0),
+            closing_rad_s: idle_rad_s.splat(0.0),
+            left_share: idle_rad_s.splat(1.0),
         }
     }
 
@@ -265,9 +276,8 @@ impl<R: Real> Reach<R> {
         wanted_rad_s.clamp(self.slowest_rad_s, self.fastest_rad_s)
     }
 
-    /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
-    pub fn mean_excess_rad_s(&self, end_rad_s: R) -> R {
-        let fall = self.from_rad_s - end_rad_s;
+    /// Mean over the step of how much faster over its box the engine is than at its end, for a fall of that as fast as it can, rad/s.
+    pub fn mean_excess_rad_s(&self, fall: R) -> R {
         let most = self.from_rad_s - self.slowest_rad_s;
         let falls = fall.gt(0.0) & most.gt(0.0);
         let none = fall.splat(0.0);

@@ -42,6 +42,10 @@ pub(super) struct Step<'a, P, R: Real = f64> {
     pub pressure_before_pa: R,
     /// How the coupling holds engine and primary together.
     pub hold: Hold<R>,
+    /// Speed of the primary at the end of the step, rad/s.
+    pub end_rad_s: R,
+    /// True where a launch clutch that slips locks within the step.
+    pub locks: R::Mask,
 }
 
 /// Unknowns of the solve.

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | FD-1 | torque without load at the secondary shaft: GT-1, shaft 0 the secondary, 1 between the stages, 2 the differential | derived; geometry ASSUMED, bearing factor and preload fitted to thesis 5.5.1 |
+//! | FD-1 | torque without load at the secondary shaft: GT-1, shaft 0 the secondary, 1 between the stages, 2 the differential | derived; geometry ASSUMED, factors fitted to thesis 5.5.1 and a manual box |
 //! | FD-2 | torque at the secondary shaft for one behind the final drive: GT-2 | derived |
 //!
 //! The bearings of the secondary's own shaft are those of the pulley.

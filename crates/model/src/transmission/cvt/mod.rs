@@ -56,10 +56,11 @@ use super::component::{ByComponent, Component};
 use super::coupling::{Coupling, Launch, PartialLoss};
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
-use crate::cycle::{Step, Trace};
+use crate::cycle::{GearCommand, Step, Trace};
 use crate::maps::LossMap;
 use crate::math::{Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
+use crate::road::WheelDemand;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
 
@@ -174,8 +175,10 @@ impl Copy for CvtState {}
 /// Values imposed on a CVT in a step, in place of its controller (RC-12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold<R: Real = f64> {
-    /// Belt ratio at the end of the step; the one before at rest.
+    /// Belt ratio of the step, its target if it is paced; the one before at rest.
     pub ratio: R,
+    /// Belt ratio at the end of the step, where that is another one (RC-17).
+    pub end: Option<R>,
     /// Clamp law; that of the box without one.
     pub clamp: Option<ClampLaw<R>>,
     /// True if the ratio is a target: the box goes there as fast as it can (RC-4, RC-5).
@@ -189,18 +192,21 @@ pub struct Shifting<R: Real = f64> {
     pub direction: R::PerLane<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
     pub share: R,
+    /// Belt ratio at the end of the step; that of the belt is the mean over it (RC-17).
+    pub ratio: R,
 }
 
 impl<R: Real> CvtState<R> {
     /// A belt at a ratio before its first step.
     pub fn new(belt: BeltAtRatio<R>) -> Self {
-        let like = belt.direction;
+        let (like, ratio) = (belt.direction, belt.geometry.ratio);
         CvtState {
             belt,
             warm_start: WarmStart::new(like),
             shifting: Shifting {
                 direction: R::per_lane(|_| 0),
                 share: like.splat(0.0),
+                ratio,
             },
             hold: None,
         }
@@ -247,14 +253,17 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
-    fn mapped_rad_s<P: PrimeMover<R>>(&self, input: &StepInput<P, R>, share: R) -> Option<R> {
+    fn mapped_rad_s<P: PrimeMover<R>>(
+        &self,
+        engine: &P,
+        (speed_m_s, secondary_rad_s): (f64, R),
+        share: R,
+    ) -> Option<R> {
         let maps = self.ratio.shift_map.as_ref()?;
-        let engine = input.engine;
-        let secondary_rad_s = self.final_drive.ratio * input.wheel.wheel_rad_s;
         let power_w = share * engine.rated_w();
         Some(share.map_lanes(|lane| {
             let at = ShiftPoint {
-                speed_m_s: input.wheel.speed_m_s,
+                speed_m_s,
                 secondary_rad_s: secondary_rad_s.lane(lane),
                 power_w: power_w.lane(lane),
                 efficiency: self.ratio.route_efficiency.lane(lane),
@@ -277,6 +286,16 @@ impl<R: Real> Cvt<R> {
         self.changes
             .as_ref()
             .is_some_and(|changes| changes.maps[component].is_some())
+    }
+
+    /// Engine speeds at both ends of a step in overrun: it holds its own, up to that in the lowest gear.
+    pub(super) fn in_overrun_rad_s(
+        &self,
+        (wheel, [_, last]): (&WheelDemand<R>, [f64; 2]),
+        engine_rad_s: R,
+    ) -> [R; 2] {
+        let lowest_rad_s = self.ratio.low * self.final_drive.ratio * wheel.wheel_rad_s * last;
+        [engine_rad_s, engine_rad_s.min(lowest_rad_s)]
     }
 
     /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
@@ -319,6 +338,7 @@ impl<R: Real> Cvt<R> {
         let zero = secondary.splat(0.0);
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
+            begins: None,
             secondary_rad_s: secondary,
             primary_rad_s: self.ratio.low * secondary,
             speed_m_s: input.wheel.speed_m_s,
@@ -328,12 +348,17 @@ impl<R: Real> Cvt<R> {
                 input.engine,
                 input.wheel.power_w / self.ratio.route_efficiency,
             ),
-            mapped_rad_s: self.mapped_rad_s(input, share),
+            mapped_rad_s: self.mapped_rad_s(
+                input.engine,
+                (input.wheel.speed_m_s, secondary),
+                share,
+            ),
             cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
             flow_down_per_s: zero,
             flow_up_per_s: zero,
             coupled: zero.splat_mask(true),
+            locks_at: zero,
             last_direction: R::per_lane(|_| 0),
             free_up_to_rad_s: zero,
             dt_s: input.dt_s,
@@ -352,6 +377,7 @@ impl<R: Real> Cvt<R> {
             throttle: zero.splat(0.1),
             secondary_pa: self.floors.control_pa,
             coupled: primary.gt(idle),
+            closing_rad_s: zero,
             stood: zero.ge(secondary).all(),
             rested_s: 0.0,
         };
@@ -429,6 +455,16 @@ impl<R: Real> super::Driveline<R> for Cvt<R> {
 
     fn is_cvt(&self) -> bool {
         true
+    }
+
+    fn overrun_rad_s(
+        &self,
+        _: Option<&Self::State>,
+        wheel: (&WheelDemand<R>, [f64; 2]),
+        _: Option<GearCommand>,
+        engine_rad_s: R,
+    ) -> [R; 2] {
+        self.in_overrun_rad_s(wheel, engine_rad_s)
     }
 
     fn neutral_share(

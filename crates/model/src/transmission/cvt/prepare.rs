@@ -1,6 +1,6 @@
 //! Prepares a step of the CVT: the ratio after shifting, and everything that depends on ratio and temperature only.
 
-use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
+use super::controller::{FREE_OVER_IDLE, Moment, RatioDemand, Shifted, direction_after};
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
 use super::evaluate::Step;
 use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
@@ -46,19 +46,41 @@ struct Route<R: Real> {
 
 /// Outcome of the shift.
 struct Shift<R: Real> {
+    /// Mean ratio of the step.
     ratio: R,
-    /// Rate of ln I, 1/s.
+    /// Mean rate of ln I, 1/s.
     rate_per_s: R,
     flow_m3_s: R,
     /// True where pump flow held it back.
     held: R::Mask,
     /// State of the control.
     kept: Shifting<R>,
+    /// Speeds of the primary at the beginning and end of the step, slip apart, rad/s.
+    primaries: [R; 2],
+    /// True where a launch clutch that slips locks within the step (RC-6).
+    locks: R::Mask,
 }
 
 /// Share of the power of full load at a target up to which the route at full load (RC-3) is surely not above it, with a margin for what three
 /// passes leave, and is not worked out (ASSUMED; the test of control.rs has cars, temperatures and air for which it holds).
 const AMPLE: f64 = 0.8;
+
+/// Speed of the engine over the route at full load for a power, rad/s (RC-3); 0 where the target is surely above it.
+#[physics]
+fn full_load_rad_s<P: PrimeMover<R>, R: Real>(
+    cvt: &Cvt<R>,
+    engine: &P,
+    demand: &RatioDemand<R>,
+    efficiency: R,
+) -> R {
+    let power_w = demand.power_w / efficiency;
+    let target_rad_s = cvt.ratio.target_rad_s(demand);
+    let ample_w = AMPLE * engine.full_load_nm(target_rad_s) * target_rad_s;
+    if (power_w.gt(0.0) & !ample_w.gt(power_w)).any() {
+        return cvt.full_load_rad_s(engine, power_w);
+    }
+    power_w.splat(0.0)
+}
 
 #[physics]
 fn shift<P: PrimeMover<R>, R: Real>(
@@ -68,69 +90,108 @@ fn shift<P: PrimeMover<R>, R: Real>(
     (before, kept, held): Before<R>,
     route: Route<R>,
 ) -> Shift<R> {
-    let asked = input.wheel.power_w / input.engine.rated_w();
+    let (wheel, engine) = (input.wheel, input.engine);
+    let half_rise_w = 0.5 * wheel.rise_w;
+    let powers_w = [wheel.power_w - half_rise_w, wheel.power_w + half_rise_w];
+    let asked = [
+        powers_w[0] / engine.rated_w(),
+        powers_w[1] / engine.rated_w(),
+    ];
     let share = cvt.ratio.filtered_share(kept.share, asked, input.dt_s);
-    let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
-    let primary_rad_s = cvt.primary_rad_s(before.ratio, secondary_rad_s, past);
+    let secondary_rad_s = cvt.final_drive.ratio * wheel.wheel_rad_s;
+    let primary_rad_s = cvt.primary_rad_s(kept.ratio, secondary_rad_s, past);
     let zero = share.splat(0.0);
     if zero.ge(primary_rad_s).all() {
         return Shift {
-            ratio: before.ratio,
+            ratio: kept.ratio,
             rate_per_s: zero,
             flow_m3_s: zero,
             held: zero.splat_mask(false),
             kept: Shifting {
                 share,
                 direction: kept.direction.clone(),
+                ratio: kept.ratio,
             },
+            primaries: [zero; 2],
+            locks: zero.splat_mask(false),
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let most = route.asked.most_flow_m3_s;
+    let speeds_m_s = wheel.end_speeds_m_s(input.dt_s);
+    let of_mean = wheel.ends_over_mean(input.dt_s);
+    let secondaries = [secondary_rad_s * of_mean[0], secondary_rad_s * of_mean[1]];
+    let mapped =
+        |k: usize, share: R| cvt.mapped_rad_s(engine, (speeds_m_s[k], secondaries[k]), share);
+    let efficiency = route.asked.efficiency;
     let mut demand = RatioDemand {
-        secondary_rad_s,
+        begins: None,
+        secondary_rad_s: secondaries[1],
         primary_rad_s,
-        speed_m_s: input.wheel.speed_m_s,
-        power_w: input.wheel.power_w,
+        speed_m_s: speeds_m_s[1],
+        power_w: powers_w[1],
         share,
         full_load_rad_s: zero,
-        mapped_rad_s: cvt.mapped_rad_s(input, share),
+        mapped_rad_s: mapped(1, share),
         cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
-        ratio_before: before.ratio,
+        ratio_before: kept.ratio,
         flow_down_per_s: most / down_m3, // RC-5
         flow_up_per_s: most / up_m3,     // RC-5
         coupled: past.coupled | zero.splat_mask(cvt.coupling.by_command()),
+        locks_at: zero,
         last_direction: route.last_direction,
-        free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
+        free_up_to_rad_s: FREE_OVER_IDLE * engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
-    let power_w = input.wheel.power_w / route.asked.efficiency;
-    let target_rad_s = cvt.ratio.target_rad_s(&demand);
-    let ample_w = AMPLE * input.engine.full_load_nm(target_rad_s) * target_rad_s;
-    if (power_w.gt(0.0) & !ample_w.gt(power_w)).any() {
-        demand.full_load_rad_s = cvt.full_load_rad_s(input.engine, power_w);
+    demand.full_load_rad_s = full_load_rad_s(cvt, engine, &demand, efficiency);
+    let first_share = cvt.ratio.filter_s.gt(0.0).select(kept.share, asked[0]);
+    let mut begins = Moment {
+        secondary_rad_s: secondaries[0],
+        speed_m_s: speeds_m_s[0],
+        power_w: powers_w[0],
+        share: first_share,
+        full_load_rad_s: zero,
+        mapped_rad_s: mapped(0, first_share),
+    };
+    begins.full_load_rad_s = full_load_rad_s(cvt, engine, &demand.at(&begins), efficiency);
+    demand.begins = Some(begins);
+    if !demand.coupled.all() {
+        demand.locks_at = locks_at(past.engine_rad_s / kept.ratio, secondaries);
     }
-    let (ratio, change, short) = match held {
+    let made = match held {
         Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
-        Some(hold) => (
-            hold.ratio,
-            (hold.ratio / before.ratio).ln(),
-            zero.splat_mask(false),
-        ), // RC-12
+        Some(hold) => Shifted {
+            mean: hold.ratio,
+            end: hold.end.unwrap_or(hold.ratio),
+            change: (hold.end.unwrap_or(hold.ratio) / kept.ratio).ln(),
+            held: zero.splat_mask(false),
+        }, // RC-12, RC-16
         None => cvt.ratio.step(&demand),
     };
+    let change = made.change;
     let volume = change.gt(0.0).select(down_m3 * change, -up_m3 * change);
     let per_s = input.dt_s.recip();
     Shift {
-        ratio,
+        ratio: made.mean,
         rate_per_s: change * per_s,
         flow_m3_s: volume * per_s,
-        held: short,
+        held: made.held,
         kept: Shifting {
-            direction: direction_after(change, &kept.direction),
+            direction: direction_after(change * per_s, &kept.direction),
             share,
+            ratio: made.end,
         },
+        primaries: [kept.ratio * secondaries[0], made.end * secondaries[1]],
+        locks: !demand.coupled & demand.locks_at.lt(1.0),
     }
+}
+
+/// Share of a step after which the secondary has reached a speed, rad/s; 1 where it does not.
+#[physics]
+fn locks_at<R: Real>(lock_rad_s: R, [first, last]: [R; 2]) -> R {
+    let (zero, one) = (first.splat(0.0), first.splat(1.0));
+    let share = ((lock_rad_s - first) / (last - first)).clamp(0.0, 1.0);
+    (last.gt(first) & last.gt(lock_rad_s)).select(share, lock_rad_s.gt(first).select(one, zero))
 }
 
 /// Powers of a step.
@@ -216,6 +277,11 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
         sump_k,
         output_rad_s: shift.ratio * secondary_rad_s,
         idle_rad_s: input.engine.idle_rad_s(),
+        faster_rad_s: past.coupled.select(
+            past.closing_rad_s,
+            (past.engine_rad_s - shift.primaries[0]).max(0.0),
+        ),
+        dt_s: input.dt_s,
     };
     let sliding = cvt
         .belt
@@ -274,5 +340,7 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
             .unwrap_or(&cvt.clamp),
         pressure_before_pa: past.secondary_pa,
         hold: cvt.coupling.hold(&signals, past.coupled),
+        end_rad_s: shift.primaries[1],
+        locks: shift.locks,
     }
 }

@@ -61,6 +61,16 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         (KICK_DOWN * had.min(efficiency)).max(MIN_ROUTE_EFFICIENCY) // RC-7
     }
 
+    /// Where full load at the end of the step does not give what is asked for then: the mean of a step may lack what a ratio on its way gives later (RC-7).
+    fn lacks_at_end(&self, p: &Point<R>) -> R::Mask {
+        let (engine, w) = (self.input.engine, p.guess.engine_rad_s);
+        let asked_w = (p.flywheel_nm + engine.accessories_nm(w)) * w;
+        let wheel = self.input.wheel;
+        let grows = 1.0 + 0.5 * wheel.rise_w / wheel.power_w;
+        let end = w.max(self.end_rad_s);
+        (asked_w * grows).gt(engine.full_load_nm(end) * end)
+    }
+
     /// Slip and loss torque in Nm that go on as in the steps before.
     fn extrapolated(&self, warm_start: &WarmStart<R>) -> (R, R) {
         let (slip, loss_nm) = warm_start.trend.next(self.input.wheel.accel_m_s2);
@@ -325,6 +335,7 @@ fn engine_off<P: PrimeMover<R>, R: Real>(
     past.stood = true;
     past.rested_s = 0.0;
     past.coupled = none.splat_mask(false);
+    past.closing_rad_s = none;
     rest.belt_ratio = ratio;
     rest.secondary_pa = none;
     rest.primary_pa = none;
@@ -351,7 +362,7 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     let before = belt.geometry;
     let hold = hold.take();
     if input.engine_off {
-        return engine_off(input, before.ratio, past, output);
+        return engine_off(input, shifting.ratio, past, output);
     }
     let mut begun = None;
     let mut efficiency = cvt.ratio.route_efficiency;
@@ -395,7 +406,8 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
                 // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
                 tried_ratio = short.select(ratio, tried_ratio);
                 let lower = step.kick_down(efficiency, &work.point);
-                efficiency = short.select(lower, efficiency);
+                let lacks = short & step.lacks_at_end(&work.point);
+                efficiency = lacks.select(lower, efficiency);
                 trying = short;
                 continue;
             }

@@ -144,6 +144,7 @@ fn rest<P: PrimeMover<R>, R: Real>(
     let capacity = belt_capacity_nm(&cvt.belt, line.at, &clamped);
     let ratio = line.at.geometry.ratio;
     output.engine_rad_s = w;
+    output.end_rad_s = w;
     output.shaft_nm = at.torques.flywheel_nm(side.engine_nm);
     output.throttle = at.throttle;
     output.belt_ratio = ratio;
@@ -168,6 +169,7 @@ fn rest<P: PrimeMover<R>, R: Real>(
     remember(past, output, Some(step.input.dt_s));
     warm_start.trend.reset_at_standstill();
     past.coupled = none.splat_mask(false);
+    past.closing_rad_s = none;
 }
 
 /// Adds the losses of all parts at the speeds of engine, primary, secondary and the shaft into the final drive, rad/s.
@@ -244,6 +246,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
     let (g, ratio) = (&p.guess, step.line.at.geometry.ratio);
     let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
     output.engine_rad_s = we;
+    output.end_rad_s = end_rad_s(step, p);
     output.shaft_nm = p.flywheel_nm;
     output.throttle = p.throttle;
     output.belt_ratio = ratio;
@@ -275,12 +278,27 @@ fn finished<P: PrimeMover<R>, R: Real>(
         trend.push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
     }
     remember(past, output, rests.then_some(step.input.dt_s));
+    past.closing_rad_s = p.locked.select(step.hold.closing_rad_s, we.splat(0.0));
     let turns_together = (p.over_rad_s * TOGETHER).ge(we);
     past.coupled = if step.line.cvt.coupling.by_command() {
         p.locked
     } else {
-        p.locked | turns_together
+        p.locked | turns_together | step.locks
     };
+}
+
+/// Engine speed at the end of the step, rad/s: that of the locked box there; a free engine has its speed in the step.
+#[physics]
+fn end_rad_s<P: PrimeMover<R>, R: Real>(step: &Step<P, R>, p: &Point<R>) -> R {
+    let we = p.guess.engine_rad_s;
+    let mean_rad_s = step.line.at.geometry.ratio * step.secondary_rad_s;
+    let box_rad_s = p.over_rad_s * (step.end_rad_s / mean_rad_s);
+    let locked = box_rad_s + (we - p.over_rad_s) * step.hold.left_share;
+    let by_command = we.splat_mask(step.line.cvt.coupling.by_command());
+    // The engine over a clutch is never slower than the box.
+    let free = by_command.select(we, we.max(box_rad_s));
+    let end = p.locked.select(locked, free);
+    mean_rad_s.gt(0.0).select(end, we)
 }
 
 /// Engine speed over that of the box up to which the two turn together.
@@ -321,7 +339,7 @@ fn solve_flags<P: PrimeMover<R>, R: Real>(
     let zero = we.splat(0.0);
     let rests = !step.secondary_rad_s.gt(0.0).any();
     let (belt, ratio) = (&p.torques.belt, step.line.at.geometry.ratio);
-    output.flag(Flags::MISSED_TRACE, outcome.limit.full_load);
+    output.flag(Flags::FULL_LOAD, outcome.limit.full_load);
     if p.torques.belt_map.is_none() {
         output.flag(Flags::GROSS_SLIP, belt.gross_slip);
     }
@@ -329,8 +347,8 @@ fn solve_flags<P: PrimeMover<R>, R: Real>(
     output.flag(Flags::LOW_CLAMP, carried.gt(belt.capacity_nm));
     output.flag(Flags::FLOW_LIMITED, p.flow_limited | step.shift_held);
     let by_command = step.line.cvt.coupling.by_command();
-    // A lock-up clutch that closes slips until the engine has come down.
-    let closes = p.locked & !past.coupled & past.engine_rad_s.gt(wp);
+    // A lock-up clutch that closes slips until the engine has come down (TC-9).
+    let closes = p.locked & step.hold.closing_rad_s.gt(0.0);
     let slips = we.gt(wp * JUST_ABOVE) & p.passed_nm.gt(0.0);
     output.flag(
         Flags::CLUTCH_SLIPPING,
@@ -399,7 +417,7 @@ fn common_flags<P: PrimeMover<R>, R: Real>(
 /// Keeps what the next step looks at; `rest_s`: how long a car at rest was.
 #[physics]
 fn remember<R: Real>(past: &mut DrivelineState<R>, output: &StepOutput<R>, rest_s: Option<f64>) {
-    past.engine_rad_s = output.engine_rad_s;
+    past.engine_rad_s = output.end_rad_s;
     past.throttle = output.throttle;
     past.secondary_pa = output.secondary_pa;
     past.stood = rest_s.is_some();

@@ -2,8 +2,8 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | BR-1 | without load M_0 = c f_0 1e-7 max(nu n, 2000)^(2/3) d_m^3 Nmm, by FH-1; nu mm2/s, n rpm, d_m mm | source: Palmgren, from memory; f_0 ASSUMED, 1 to 8; c fitted to thesis 5.5.1 for the Rover, else 1 |
-//! | BR-2 | preload M_pre = M (0.04 + 0.08 psi)/0.12, psi = exp(-2.6e-8 (nu n)^1.4 d_m) | source: SKF's weighting of mixed and full film friction, in an open program of TU Munich; M ASSUMED, fitted to thesis 5.5.1 for the Rover |
+//! | BR-1 | without load M_0 = c f_0 1e-7 max(nu n, 2000)^(2/3) d_m^3 Nmm, by FH-1; c = 1 without preload; nu mm2/s, n rpm, d_m mm | source: Palmgren, from memory; f_0 ASSUMED, 1 to 8; c fitted to thesis 5.5.1 and the class loss of manual boxes, one for all boxes |
+//! | BR-2 | preload M_pre = M (0.04 + 0.08 psi)/0.12, psi = exp(-2.6e-8 (nu n)^1.4 d_m) | source: SKF's weighting of mixed and full film friction, in an open program of TU Munich; M ASSUMED, fitted with c |
 //! | BR-3 | lost share of the power through a stage: 1.1 mu_b (d_b1/d_1 + d_b2/(u d_1)) | derived: bearings carry 1.1 times the force of the teeth; mu_b ASSUMED, 0.0008 to 0.0020 |
 //!
 //! d_m mean and d_b bore diameter of the bearings of a shaft, d_1 pitch diameter of the pinion, u ratio of wheel to pinion. With BR-2 a
@@ -45,7 +45,7 @@ pub struct Bearing {
 pub struct BearingFactors {
     /// Friction under load (BR-3).
     pub friction: f64,
-    /// Factor on M_0 (BR-1).
+    /// Factor on M_0 of bearings with preload (BR-1).
     pub unloaded: f64,
     /// Factor on the preload (BR-2).
     pub preload: f64,
@@ -65,7 +65,13 @@ impl Bearing {
     pub fn in_train(&self, factors: &BearingFactors, turns: f64) -> TrainBearing {
         let mean_mm = 1e3 * self.mean_m;
         let cube_mm3 = mean_mm * mean_mm * mean_mm;
-        let per_power_nm = factors.unloaded * self.count * self.f0 * 1e-10 * cube_mm3; // BR-1
+        // The factor holds the rolling friction that preload adds.
+        let rolling = if self.preload_nm > 0.0 {
+            factors.unloaded
+        } else {
+            1.0
+        };
+        let per_power_nm = rolling * self.count * self.f0 * 1e-10 * cube_mm3; // BR-1
         let [turns_23, turns_14] = film_powers(ln(turns));
         TrainBearing {
             turns,

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | CH-1 | C = f rho/2 w^2 R^3 S_m 1.366 (h/D)^0.45 (V/D^3)^0.1 Fr^-0.6 Re^-0.21 (b/R)^0.21 | source: form of Changenet and Velex 2007 (J. Mech. Des. 129); coefficients from memory, ASSUMED within 0.3 to 5; f of the manual boxes fitted to their published hot loss |
+//! | CH-1 | C = f rho/2 w^2 R^3 S_m 1.366 (h/D)^0.45 (V/D^3)^0.1 Fr^-0.6 Re^-0.21 (b/R)^0.21 | source: form of Changenet and Velex 2007 (J. Mech. Des. 129); coefficients from memory, ASSUMED within 0.3 to 5; f fitted with c of BR-1 |
 //!
 //! Fr = w^2 R/g, Re = w R^2/nu; R radius, D diameter, b width, h immersion, all m; S_m wetted flanks and rim, m2; V oil in the sump, m3;
 //! rho kg/m3. The law of low Reynolds numbers is used at all of them.

@@ -15,7 +15,7 @@ keys! {
     /// Keys of `[transmission.manual.gears]` and, under its own name, of `[transmission.cvt.final_drive]`.
     GEARS: GearKeys = "gears" [] {
         bearing_friction: or(0.0015, number(0.0, 0.01)), "friction of the bearings under load, at the bore", ["BR-3"];
-        bearing_factor: or(1.0, number(0.0, 20.0)), "factor on the torque of the bearings without load", ["BR-1"];
+        bearing_factor: or(1.0, number(0.0, 20.0)), "factor on the torque without load of the bearings with preload", ["BR-1"];
         bearing_heating_w: or(400.0, number(1.0, 1e9)), "dissipation of one bearing at which the heat of its film halves its torque without load", ["BR-1", "FH-1"];
         preload_factor: or(1.0, number(0.0, 10.0)), "factor on the preload of all bearings", ["BR-2"];
         churning_factor: or(1.0, number(0.0, 20.0)), "factor on churning", ["CH-1"];

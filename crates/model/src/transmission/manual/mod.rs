@@ -4,14 +4,14 @@
 //! |---|---|---|
 //! | MB-1 | torque at the input shaft for one at the wheels: GT-2, shaft 0 the input, 1 the output, 2 the differential; stage 1 is the gear engaged | derived; geometry ASSUMED |
 //! | MB-2 | seals: LS-1 | source: ISO/TR 14179-2; sizes ASSUMED |
-//! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes and preload ASSUMED |
-//! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published hot loss |
-//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
+//! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes ASSUMED, factors fitted to the published losses and thesis 5.5.1 |
+//! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published losses |
+//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque and the engine may turn as fast at both ends of the step, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
 //! | MB-6 | GT-1 and GT-2 with f_bearing (M_0 + M_pre) and the bearings' part of k, f_churning C, f_seal T_seal, f_mesh the teeth's part of k; a map f times | derived: definition of losses changed by the factors f of `loss_factor`, for their price |
 //!
 //! At 80 degC the mean of gears 3 to 5 without load follows the published 0.925 Nm + 0.000407 Nm/rpm within 25 % from 1000 to 4000 rpm, and
 //! flatter. In neutral the engine turns the input shaft and a share of the losses in top gear; declutched, the wheels turn the box.
-//! A gear change is driven in the gear that follows it. After a change up the clutch slips until the engine has come down to the box (EN-12).
+//! A gear change is driven in the gear that follows it; where the driver's shift speeds decide, the trace has a row there. After a change up the clutch slips until the engine has come down to the box (EN-12).
 
 mod engaged;
 mod gears;
@@ -35,6 +35,7 @@ use crate::lubricant::VALID_K;
 use crate::maps::LossMap;
 use crate::math::{Gather, Mask, Real, gather_each, physics};
 use crate::prime_mover::PrimeMover;
+use crate::road::WheelDemand;
 use crate::thermal::SUMP;
 
 /// The checked manual box.
@@ -83,6 +84,16 @@ impl<R: Real> Driveline<R> for Manual<R> {
         false
     }
 
+    fn overrun_rad_s(
+        &self,
+        state: Option<&DrivelineState<R>>,
+        wheel: (&WheelDemand<R>, [f64; 2]),
+        gear: Option<GearCommand>,
+        _: R,
+    ) -> [R; 2] {
+        self.in_overrun_rad_s(state, wheel, gear)
+    }
+
     fn neutral_share(
         &self,
         _: Option<&DrivelineState<R>>,
@@ -105,6 +116,26 @@ impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
     pub fn loss_factors(&self) -> LossFactors {
         self.factor.as_deref().copied().unwrap_or(UNCHANGED)
+    }
+
+    /// Speeds at which the driver of a car that slows down opens the clutch of a warm engine, m/s (MB-5).
+    #[must_use]
+    pub fn opens_m_s(&self, idle_rad_s: f64, wheel_radius_m: f64) -> Vec<f64> {
+        self.passes_m_s(MIN_OVER_IDLE * idle_rad_s, wheel_radius_m)
+    }
+
+    /// Speeds at which the engine of a car that slows down passes a speed, rad/s, in each gear that is in force there, m/s.
+    #[must_use]
+    pub fn passes_m_s(&self, engine_rad_s: f64, wheel_radius_m: f64) -> Vec<f64> {
+        let speed = |overall: &f64| engine_rad_s / overall * wheel_radius_m;
+        let own = self.overall.iter().map(speed).enumerate();
+        let down = &self.shifts.down_m_s;
+        let in_force = |(place, speed): &(usize, f64)| {
+            let below = place.checked_sub(1).and_then(|below| down.get(below));
+            let above = down.get(*place);
+            below.is_none_or(|below| speed > below) && above.is_none_or(|above| speed < above)
+        };
+        own.filter(in_force).map(|(_, speed)| speed).collect()
     }
 
     /// Multiplies each loss by a factor (MB-6, LC-6).
@@ -179,9 +210,29 @@ impl<R: Real> Manual<R> {
             throttle: zero,
             secondary_pa: zero,
             coupled: input.gt(idle),
+            closing_rad_s: zero,
             stood: true,
             rested_s: 0.0,
         }
+    }
+
+    /// Speeds of the input shaft at both ends of a step in the gear that the driver chooses by speed, rad/s.
+    pub(super) fn in_overrun_rad_s(
+        &self,
+        state: Option<&DrivelineState<R>>,
+        (wheel, [first, last]): (&WheelDemand<R>, [f64; 2]),
+        command: Option<GearCommand>,
+    ) -> [R; 2] {
+        let count = self.overall.len();
+        let gear = R::per_lane(|run| match command {
+            Some(command) => command.gear().min(count as u8),
+            None => {
+                let before = state.map_or(1, |state| *R::get(&state.gear, run));
+                R::get(&self.shifts, run).for_speed(wheel.speed_m_s, before, count)
+            }
+        });
+        let mean = self.input_rad_s(&gear, wheel.wheel_rad_s);
+        [first * mean, last * mean]
     }
 
     /// Speed of the input shaft in the gear of each run, rad/s; 0 without one.
@@ -291,7 +342,7 @@ impl<R: Real> Manual<R> {
             let kept = R::get_mut(&mut state.gear, run);
             *kept = if gear > 0 { gear } else { *kept };
         }
-        state.engine_rad_s = output.engine_rad_s;
+        state.engine_rad_s = output.end_rad_s;
         let in_gear = output
             .residual
             .mask_lanes(|run| *R::get(&output.gear, run) > 0);

@@ -4,7 +4,7 @@ use super::engaged::sum_nm;
 use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
 use crate::lubricant::OilState;
-use crate::math::{Mask, Real, physics};
+use crate::math::{Mask, Real, larger, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -94,6 +94,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         let losses = self.box_in(self.top(), w, w.splat(0.0)).unloaded_nm();
         let share = self.manual.neutral_share;
         output.engine_rad_s = w;
+        output.end_rad_s = w;
         output.shaft_nm = share * sum_nm(&losses);
         lose(output, &losses, share * w);
         self.set_throttle(output, self.step.engine.full_load_nm(w));
@@ -105,6 +106,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
         let losses = self.box_in(gear, input, input.splat(0.0)).unloaded_nm();
         output.engine_rad_s = self.free_engine_rad_s();
+        output.end_rad_s = output.engine_rad_s;
         output.gear = R::per_lane(|_| gear);
         output.flag(Flags::CLUTCH_OPEN, input.splat_mask(true));
         let turns = input.gt(0.0);
@@ -143,9 +145,11 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         });
     }
 
-    /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there.
+    /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there, at the faster end of the step.
     fn may_shift_down(&self, gear: u8) -> R::Mask {
-        let wheel_rad_s = self.step.wheel.wheel_rad_s;
+        let wheel = self.step.wheel;
+        let [first, last] = wheel.ends_over_mean(self.step.dt_s);
+        let wheel_rad_s = larger(first, last) * wheel.wheel_rad_s;
         match usize::from(gear).checked_sub(2) {
             Some(below) => {
                 (self.manual.overall[below] * wheel_rad_s).lt(self.step.engine.max_rad_s())
@@ -199,7 +203,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
             ..StepOutput::like(input)
         };
         if limited.any() {
-            output.flag(Flags::MISSED_TRACE, above);
+            output.flag(Flags::FULL_LOAD, above);
             let torque = below.select(least, most);
             let (output_nm, iterations) = engaged.output_for(torque);
             for run in (0..R::LANES).filter(|run| limited.lane(*run)) {
@@ -218,6 +222,9 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         }
         let w = speed.end_rad_s;
         output.engine_rad_s = w;
+        let [_, last] = wheel.ends_over_mean(self.step.dt_s);
+        let together = (input * SLIPS_FROM).ge(w);
+        output.end_rad_s = together.select(last * input, w.max(last * input));
         let side = coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
         output.add_loss(Component::LaunchClutch, side.loss_w);
@@ -232,12 +239,15 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         output.flag(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         output.flag(Flags::NOT_CONVERGED, output.residual.gt(1e-8));
         self.set_throttle(output, full_load_nm);
-        // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
-        // full load nothing else may: no more than full load is passed on.
+        // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it, and
+        // what full load leaves.
         let mean_rad_s = w + speed.excess_rad_s;
         let at_mean = coupling.engine_side(at.input_nm, input, mean_rad_s);
         let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
-        let on_the_way_w = (at_mean.loss_w - side.loss_w).min(room_nm.max(0.0) * w);
+        // Not that of the speed before: after a change down in overrun the energy lags (SI-5), and what is not there would be burnt beyond full load.
+        let released_j = self.step.kinetic_j - engine.rotating_j(output.end_rad_s);
+        let room_w = room_nm.max(0.0) * w + released_j.max(0.0) / self.step.dt_s;
+        let on_the_way_w = (at_mean.loss_w - side.loss_w).min(room_w);
         output.shaft_nm = output.shaft_nm + on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         lacks_torque
@@ -266,10 +276,12 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         let passed_nm = input_nm.clamp(0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
         let end_rad_s = reach.nearest(wanted).max(least);
+        let [first, _] = self.step.wheel.ends_over_mean(self.step.dt_s);
+        let faster_rad_s = before_rad_s - first * input_rad_s;
         EngineSpeed {
             end_rad_s,
             settled_rad_s: wanted.max(least),
-            excess_rad_s: reach.mean_excess_rad_s(end_rad_s),
+            excess_rad_s: reach.mean_excess_rad_s(faster_rad_s - (end_rad_s - input_rad_s)),
         }
     }
 }

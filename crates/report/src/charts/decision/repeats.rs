@@ -3,7 +3,7 @@
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
     Axis, BELOW, Chart, End, Panel, RULE, Rect, Shape, Style, Symbol, WIDTH, at, cell, group_line,
-    label_ends, stroke,
+    stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, capital_first, grouped, words};
@@ -80,7 +80,7 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
     }
     let ends = groups.iter().zip(&parts);
     let ends = ends.map(|((group, _), part)| named(*group, part, last as f64));
-    label_ends(&mut panel, ends.collect());
+    panel.ends = ends.collect();
     let totals: Vec<f64> = drives.iter().map(Repeat::total_kj).collect();
     let title = says::repeats(&totals, &parts);
     Chart::new(title, subject, MARGIN)

@@ -1,6 +1,6 @@
 //! Titles of figures: sentences with numbers of their table, each used only where it is true.
 
-use crate::number::{grouped, list_of, signed};
+use crate::number::{grouped, list_of};
 use cvtcycle_analysis::words::{between, decimals, more_or_less, than};
 
 /// "7 % more than the baseline", with the digits that the interval supports.
@@ -25,7 +25,7 @@ pub(super) fn strip(
     };
     let compared = against(percent, interval, baseline);
     match interval {
-        None => format!("{subject} uses {compared}; how sure that is, is not known"),
+        None => format!("{subject} uses {compared}; no range is claimed"),
         Some(ends @ [low, high]) if low < 0.0 && high > 0.0 => {
             format!(
                 "{subject} uses {compared}; even the sign is open: {}",
@@ -42,22 +42,22 @@ pub(super) fn strip(
     }
 }
 
-/// Title of the change from the fuel of a baseline to that of the subject, kJ/km; `terms` in descending size.
-pub(super) fn waterfall(names: [&str; 2], difference: f64, terms: &[(String, f64)]) -> String {
+/// Title of the change from the fuel of a baseline to that of the subject; `terms` in kJ/km and descending size. It states no difference, since
+/// that has a range, which is with the answer.
+pub(super) fn waterfall(names: [&str; 2], terms: &[(String, f64)]) -> String {
     let [subject, baseline] = names;
-    let kj = |x: f64| signed(grouped(x, 0), x);
-    let more = if difference < 0.0 { "less" } else { "more" };
     let named = terms.iter().filter(|(_, x)| x.abs() >= 0.5).take(2);
     let named: Vec<String> = named
-        .map(|(name, x)| format!("{name} {}", kj(*x)))
+        .map(|(name, kj)| {
+            let word = if *kj < 0.0 { "less" } else { "more" };
+            format!("{word} for {name}")
+        })
         .collect();
-    let size = grouped(difference.abs(), 0);
-    let rest = if named.is_empty() {
-        String::new()
-    } else {
-        format!(": {}", list_of(&named))
-    };
-    format!("Per kilometre {subject} burns {size} kJ {more} than {baseline}{rest}")
+    if named.is_empty() {
+        return format!("No term differs between {subject} and {baseline}");
+    }
+    let named = list_of(&named);
+    format!("Fuel of {subject} against {baseline}: {named}")
 }
 
 /// Title of the repeated part of a cycle, from all losses of each drive and those of each group in the first and last one.

@@ -99,7 +99,7 @@ pub fn waterfall(data: &PerKm, conditions: &str) -> Picture {
         .map(|(name, _, kj)| (name.clone(), *kj))
         .collect();
     named.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let title = says::waterfall([subject, baseline], difference, &named);
+    let title = says::waterfall([subject, baseline], &named);
     Chart::new(title, conditions, MARGIN)
         .panels([panel])
         .picture(table)

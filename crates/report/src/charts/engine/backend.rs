@@ -143,7 +143,8 @@ fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Err
         0
     };
     let rect = panel.rect;
-    let corner = (units(rect.left - LEFT) as i32, units(rect.top) as i32);
+    let left = LEFT.min(rect.left);
+    let corner = (units(rect.left - left) as i32, units(rect.top) as i32);
     let size = (
         units(rect.right) as i32 - corner.0,
         units(rect.bottom) as i32 - corner.1 + below,
@@ -152,7 +153,7 @@ fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Err
     let area = surface.shrink(corner, size);
     let mut builder = ChartBuilder::on(&area);
     builder
-        .y_label_area_size(units(LEFT) as i32)
+        .y_label_area_size(units(left) as i32)
         .x_label_area_size(below);
     let mut chart = builder.build_cartesian_2d(Scale(&panel.x), Scale(&panel.y))?;
     // Plotters truncates sizes to whole numbers.

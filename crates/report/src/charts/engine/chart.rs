@@ -24,6 +24,10 @@ pub(crate) struct Chart {
     pub left: f64,
     /// Width, pixels; zero is [`WIDTH`].
     pub width: f64,
+    /// True for the layout of a narrow screen.
+    pub is_narrow: bool,
+    /// The chart for a narrow screen, where it is not this one with its panels below each other.
+    pub other: Option<Box<Chart>>,
     pub panels: Vec<Panel>,
     /// Legends with fixed places.
     pub sides: Vec<Side>,
@@ -49,6 +53,12 @@ impl Chart {
 
     pub fn lead(mut self, lead: impl Into<String>) -> Self {
         self.lead = lead.into();
+        self
+    }
+
+    /// Sets the chart for a narrow screen.
+    pub fn narrow(mut self, other: Chart) -> Self {
+        self.other = Some(Box::new(other));
         self
     }
 
@@ -111,7 +121,7 @@ pub(crate) enum Content {
 }
 
 impl Block {
-    fn new((left, width): Point, content: Content) -> Self {
+    pub(super) fn new((left, width): Point, content: Content) -> Self {
         Block {
             left,
             width,

@@ -1,6 +1,8 @@
 //! Panels: a pair of axes and the shapes between them; panels of rows with names at the left.
 
 use super::axis::Axis;
+use super::ends::End;
+use super::narrow::PAD;
 use super::place::{Label, Place, at};
 use super::style::{INK, Stroke, Style, stroke};
 use super::svg::{Point, Rect};
@@ -29,6 +31,13 @@ pub(crate) struct Panel {
     pub no_data: bool,
     /// Room below the panel, pixels.
     pub below: f64,
+    /// Height of a row of a panel of rows, pixels.
+    pub pitch: Option<f64>,
+    /// Names of lines at their right ends, and above the places where lines leave the panel.
+    pub ends: Vec<End>,
+    pub above: Vec<End>,
+    /// True if names of lines lie on cells.
+    pub on_cells: bool,
     /// Shapes, the first at the bottom.
     pub items: Vec<Item>,
 }
@@ -195,11 +204,12 @@ pub(crate) fn rows_panel(
     pitch: f64,
     x: Axis,
 ) -> Panel {
-    const PAD: f64 = 3.0;
     let rows = count.max(1) as f64;
     let rect = Rect::new(left, top, right - left, rows * pitch + 2.0 * PAD);
     let pad = PAD / pitch;
-    Panel::new(rect, x, Axis::bare(rows + pad, -pad))
+    let mut panel = Panel::new(rect, x, Axis::bare(rows + pad, -pad));
+    panel.pitch = Some(pitch);
+    panel
 }
 
 /// Left edge of rows with names, pixels: room for the longest name, up to a limit.

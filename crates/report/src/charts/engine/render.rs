@@ -2,23 +2,35 @@
 
 use super::backend::frame;
 use super::chart::{Chart, WIDTH};
+use super::ends;
 use super::panel::{Item, Panel, Shape, free};
 use super::place::{Label, Place, at};
 use super::style::{INK, Style, marks, stroke};
 use super::svg::{Path, Point, Rect, Svg, units};
-use super::text::{Cut, text_width};
-use crate::charts::picture::{MAX_SPANS, Picture, PictureTable};
+use super::text::{Cut, lines, text_width};
+use crate::charts::picture::{MAX_SPANS, Narrow, Picture, PictureTable};
 use cvtcycle_output::table::distinct;
 
 /// Size of the title, its minimum for a long title, and size of the line below it, pixels.
 const TITLE: f64 = 15.0;
 const MIN_TITLE: f64 = 12.5;
 const SUBJECT: f64 = 12.0;
+/// Size of the subject of a narrow picture, and room between lines of titles and subjects, pixels.
+const NARROW_SUBJECT: f64 = 11.0;
+const LEADING: f64 = 4.0;
 
 impl Chart {
     /// Draws the chart, whose numbers are in a table.
-    pub fn picture(self, table: PictureTable) -> Picture {
-        let width = if self.width > 0.0 { self.width } else { WIDTH };
+    pub fn picture(mut self, table: PictureTable) -> Picture {
+        self.make_room_for_head();
+        let words = self.alt_text(&table);
+        let svg = self.drawn(&words);
+        let narrow = Narrow(Some((Box::new(self), words)));
+        Picture { svg, narrow, table }
+    }
+
+    fn drawn(&self, words: &str) -> String {
+        let width = self.wide();
         let ends = self.panels.iter().map(|p| p.rect.bottom + p.below);
         let (mut top, mut row) = (ends.fold(0.0, f64::max), 0.0_f64);
         let mut tops = Vec::new();
@@ -46,20 +58,76 @@ impl Chart {
             "" => self.title.clone(),
             subject => format!("{}: {subject}", self.title),
         };
-        let svg = svg.finish(&title, &self.alt_text(&table));
-        Picture { svg, table }
+        svg.finish(&title, words)
+    }
+
+    /// Lines of title and subject with their sizes. A long sentence is shrunk a little before it wraps.
+    fn head_lines(&self) -> [(Vec<String>, f64); 2] {
+        let narrow = self.is_narrow;
+        let right = if narrow { self.left } else { 10.0 };
+        let room = self.wide() - self.left - right;
+        let fits = room / text_width(&self.title, 1.0).max(1.0);
+        let size = if narrow {
+            MIN_TITLE
+        } else {
+            fits.clamp(MIN_TITLE, TITLE)
+        };
+        let below = if narrow { NARROW_SUBJECT } else { SUBJECT };
+        [(&self.title, size), (&self.subject, below)]
+            .map(|(text, size)| (lines(text, size, room), size))
+    }
+
+    fn wide(&self) -> f64 {
+        if self.width > 0.0 { self.width } else { WIDTH }
+    }
+
+    /// Height of title and subject of a narrow picture, pixels.
+    pub(super) fn head_height(&self) -> f64 {
+        let lines = self.head_lines();
+        let lines = lines
+            .iter()
+            .map(|(lines, size)| lines.len() as f64 * (size + LEADING));
+        lines.sum::<f64>() + 8.0
+    }
+
+    /// Moves all below a title and subject of more than one line each down.
+    fn make_room_for_head(&mut self) {
+        let more = |(lines, size): &(Vec<String>, f64)| {
+            lines.len().saturating_sub(1) as f64 * (size + LEADING)
+        };
+        let more: f64 = self.head_lines().iter().map(more).sum();
+        for panel in &mut self.panels {
+            panel.rect.top += more;
+            panel.rect.bottom += more;
+        }
+        for side in &mut self.sides {
+            side.corner.1 += more;
+        }
     }
 
     fn head(&self, svg: &mut Svg) {
-        let room = svg.width - self.left - 10.0;
-        let text = |y: f64, text: &str, size: f64| {
-            Label::new(at(self.left, y), Cut::End.apply(text, size, room)).size(size)
+        let [title, subject] = self.head_lines();
+        let mut y = if self.is_narrow {
+            2.0 + MIN_TITLE + LEADING
+        } else {
+            24.0
         };
-        // A long sentence is shrunk a little before it is cut.
-        let fits = room / text_width(&self.title, 1.0).max(1.0);
-        let size = fits.clamp(MIN_TITLE, TITLE);
-        draw_text(svg, text(24.0, &self.title, size).bold(true));
-        draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
+        for line in &title.0 {
+            let label = Label::new(at(self.left, y), line).size(title.1);
+            draw_text(svg, label.bold(true));
+            y += title.1 + LEADING;
+        }
+        if !self.is_narrow {
+            // The base line of the subject of a title of one line is at 42.
+            y = 42.0 + (y - 24.0 - title.1 - LEADING).max(0.0);
+        }
+        for line in &subject.0 {
+            draw_text(
+                svg,
+                Label::new(at(self.left, y), line).size(subject.1).quiet(),
+            );
+            y += subject.1 + LEADING;
+        }
     }
 
     /// The picture in words: its first sentence, the titles of its axes, its key numbers.
@@ -118,6 +186,10 @@ fn draw_panel(svg: &mut Svg, panel: &Panel) {
     for item in &panel.items {
         draw(svg, panel, item);
     }
+    let named = ends::labels(panel).into_iter();
+    for label in named.chain(ends::labels_above(panel, svg.width)) {
+        draw_label(svg, panel, &label);
+    }
     if panel.no_data {
         let (half_x, half_y) = (0.5 * panel.rect.width(), 0.5 * panel.rect.height());
         let label = Label::new(corner.shift(half_x, half_y + 4.0), "no data");
@@ -158,7 +230,7 @@ fn draw(svg: &mut Svg, panel: &Panel, item: &Item) {
         Shape::Rect(a, b) => draw_rect(svg, panel, (*a, *b), &item.style),
         Shape::Ribbon(from, to, height) => {
             let mut path = Path::default();
-            path.add_ribbon(*from, *to, *height);
+            path.add_ribbon(panel.pixel(*from), panel.pixel(*to), *height);
             let paint = item.style.attributes(svg);
             svg.path(path, &paint);
         }
@@ -246,8 +318,12 @@ fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
     };
     let text = label.cut.apply(&label.text, label.size, label.room);
     if label.ground {
-        let half = 0.5 * text_width(&text, label.size) + 1.0;
-        let ground = Rect::new(x - half, y - 11.0, 2.0 * half, 14.0);
+        let wide = text_width(&text, label.size) + 2.0;
+        let left = match label.anchor {
+            "start" => x - 1.0,
+            _ => x - 0.5 * wide,
+        };
+        let ground = Rect::new(left, y - 11.0, wide, 14.0);
         let paint = Style::colour("#ffffff").fill_opacity(0.85).attributes(svg);
         svg.rect(ground, &paint);
     }
@@ -277,4 +353,12 @@ fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
 fn pixel(panel: &Panel, place: Place) -> Option<Point> {
     let (x, y) = (panel.px(place.x) + place.dx, panel.py(place.y) + place.dy);
     (x.is_finite() && y.is_finite()).then_some((x, y))
+}
+
+impl Narrow {
+    /// The picture for a narrow screen; `None` for one that is drawn in pixels.
+    pub fn svg(&self) -> Option<String> {
+        let (chart, words) = self.0.as_ref()?;
+        Some(chart.narrowed()?.drawn(words))
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::{TOP, drive_subtitle};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
-    Stroke, Style, WIDTH, at, cell, label_ends_on_cells, stroke, text_width,
+    Axis, Block, Chart, End, Entry, ON_CELLS, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
+    Stroke, Style, WIDTH, cell, stroke, text_width,
 };
 use crate::charts::grids::Density;
 use crate::charts::picture::{Picture, PictureTable};
@@ -38,12 +38,10 @@ pub struct GuideLine {
 }
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
-/// Maximum room right of the panel for names of lines that leave there, and above it, pixels.
-const NAMES: f64 = 190.0;
+/// Room above the panel for names of lines that leave there, pixels.
 const ABOVE: f64 = 16.0;
-/// Size of a name, and minimum distance of two names next to each other, pixels.
+/// Size of a name, pixels.
 const NAME: f64 = 11.0;
-const APART: f64 = 8.0;
 const TALL: f64 = 400.0;
 /// Maximum number of cells along each axis.
 const CELLS: (usize, usize) = (80, 40);
@@ -78,14 +76,14 @@ pub fn variogram(data: &Variogram) -> Picture {
     ));
     let names = |(name, points, line): &SeenLine| End {
         at: *points.last().unwrap_or(&(f64::NAN, f64::NAN)),
-        text: Cut::End.apply(name, NAME, NAMES - 10.0),
+        text: (*name).to_owned(),
         colour: line.colour,
     };
     let is_high = |end: &End| (end.at.1 - y.high).abs() < 1e-6 * y.high;
     let (above, at_right): (Vec<End>, Vec<End>) = seen.iter().map(names).partition(is_high);
     let room = at_right
         .iter()
-        .map(|end| text_width(&end.text, NAME) + 10.0);
+        .map(|end| text_width(&end.text, NAME).min(ON_CELLS) + 10.0);
     let wide = WIDE - room.fold(0.0, f64::max);
     let rect = Rect::new(PLOT_LEFT, TOP + ABOVE, wide, TALL);
     let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
@@ -104,10 +102,9 @@ pub fn variogram(data: &Variogram) -> Picture {
     for (_, points, line) in seen.iter().rev() {
         panel.series(points.clone(), *line);
     }
-    name_above(&mut panel, above);
-    label_ends_on_cells(&mut panel, at_right);
+    (panel.ends, panel.above, panel.on_cells) = (at_right, above, true);
     // A legend repeats names that were cut.
-    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > NAMES - 10.0;
+    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > ON_CELLS;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
     let drive = drive_subtitle(&data.subject, &data.conditions);
@@ -121,33 +118,6 @@ pub fn variogram(data: &Variogram) -> Picture {
             density.key("Time spent in a cell [s]"),
         ))
         .picture(table)
-}
-
-/// Writes names of lines above the places where they leave the panel, each cut to the room before the next one.
-fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
-    ends.sort_by(|a, b| a.at.0.total_cmp(&b.at.0));
-    let lefts: Vec<f64> = ends.iter().map(|end| panel.px(end.at.0) - 4.0).collect();
-    for (k, end) in ends.iter().enumerate() {
-        let next = lefts.get(k + 1).copied().unwrap_or(WIDTH - 4.0);
-        let wide = text_width(&end.text, NAME);
-        let is_last = k + 1 == ends.len();
-        let left = match is_last {
-            true => lefts[k].min((WIDTH - 4.0 - wide).max(panel.rect.left)),
-            false => lefts[k],
-        };
-        let before = k.checked_sub(1).map_or(f64::NEG_INFINITY, |before| {
-            lefts[before] + text_width(&ends[before].text, NAME) + APART
-        });
-        let left = left.max(before.min(lefts[k]));
-        let text = Cut::End.apply(
-            &end.text,
-            NAME,
-            next - left - if is_last { 0.0 } else { APART },
-        );
-        let place = at(f64::NEG_INFINITY, f64::INFINITY);
-        let place = place.shift(left - panel.rect.left, -5.0);
-        panel.label(Label::new(place, text).colour(end.colour));
-    }
 }
 
 /// Title: the row of cells with the largest share of time.

@@ -11,7 +11,7 @@ pub(crate) use printed::entries as printed_entries;
 pub use super::engine::Palette;
 use super::engine::{
     Axis, BELOW, Block, CONTEXT, Chart, End, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, Shape,
-    Side, Stroke, Style, Symbol, WIDTH, at, grid, label_ends, range, stroke, text_width,
+    Side, Stroke, Style, Symbol, WIDTH, at, grid, range, stroke, text_width,
 };
 use super::picture::Picture;
 use cvtcycle_output::Component;
@@ -57,6 +57,8 @@ pub struct LinePanel {
     pub stacked: bool,
     /// Look and points of each series, with a gap where a value is not finite; stacked ones share their horizontal values.
     pub series: Vec<(Look, Points)>,
+    /// Look, and position with lower and upper end, of ranges drawn below the lines.
+    pub bands: Vec<(Look, Vec<(f64, f64, f64)>)>,
     /// Published numbers next to the series.
     pub printed: Vec<PrintedMark>,
 }
@@ -257,6 +259,10 @@ fn draw(data: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) ->
     if panel.stacked {
         stack_layers(&mut drawn, panel.series.clone(), |k| data.fill(k));
     } else {
+        for (look, band) in &panel.bands {
+            let fill = Style::fill(Fill::plain(data.stroke(*look).colour)).fill_opacity(0.15);
+            drawn.add(Shape::between(band), fill.class("band"));
+        }
         // The first of the list is on top.
         for (look, points) in panel.series.iter().rev() {
             let stroke = data.stroke(*look);
@@ -272,7 +278,7 @@ fn draw(data: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) ->
     }
     if data.is_direct() {
         let ends = panel.series.iter().filter_map(|series| data.end(series));
-        label_ends(&mut drawn, ends.collect());
+        drawn.ends = ends.collect();
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
     let mut points = panel.series.iter().flat_map(|(_, points)| points);
@@ -311,6 +317,8 @@ fn y_axis(title: &str, panels: &[LinePanel], tight: bool, ticks: usize) -> Axis 
 fn heights(panel: &LinePanel) -> Vec<f64> {
     let mut all = panel.with_y.clone();
     all.extend(panel.printed.iter().flat_map(|mark| mark.y));
+    let bands = panel.bands.iter().flat_map(|(_, band)| band);
+    all.extend(bands.flat_map(|(_, low, high)| [*low, *high]));
     let series = || panel.series.iter().map(|(_, points)| points);
     if panel.stacked {
         all.push(0.0);

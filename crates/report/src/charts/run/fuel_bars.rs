@@ -3,7 +3,7 @@
 use super::PlotRun;
 use crate::charts::engine::{
     Axis, Block, Chart, Cut, Entry, Fill, Label, PLOT_LEFT, Panel, Rect, Style, at, optional_cell,
-    text_width,
+    row_middle, rows_panel, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{list_of, phase};
@@ -39,8 +39,9 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
         [run] => run.name.to_owned(),
         _ => format!("{} vehicles", runs.len()),
     };
-    Chart::new(title(runs), subject, PLOT_LEFT)
+    Chart::new(title(runs), &subject, PLOT_LEFT)
         .width(PLOT_LEFT + plot + 20.0)
+        .narrow(Chart::new(title(runs), subject, PLOT_LEFT).panels(rows(runs, &groups)))
         .panels([panel])
         .foot(Block::legend((PLOT_LEFT, plot), "Vehicle", entries))
         .picture(table)
@@ -69,6 +70,28 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
         panel.label(name.bold(group == headline).cut(Cut::End, room));
     }
     table
+}
+
+/// A panel of horizontal bars for each group, which fit on a narrow screen; marks have the rows of the table of [`draw_groups`].
+fn rows(runs: &[PlotRun], groups: &[String]) -> Vec<Panel> {
+    let panel = |(g, group): (usize, &String)| {
+        let mut panel = rows_panel((PLOT_LEFT, TOP), WIDTHS.0, runs.len(), 18.0, axis(runs))
+            .heading(phase(group))
+            .x_labels(g + 1 == groups.len());
+        for (i, run) in runs.iter().enumerate() {
+            let value = value_of(run, group);
+            let name = Label::new(at(0.0, 0.0), run.name).bold(group == headline(groups));
+            panel.row_name(i, name);
+            if let Some(value) = value {
+                let style = Style::edged(Fill::car(i), 0.75).row(g * runs.len() + i);
+                panel.bar(i, (0.0, value), (-6.0, 6.0), style);
+                let end = at(value, row_middle(i)).shift(6.0, 4.0);
+                panel.label(Label::new(end, format!("{value:.2}")));
+            }
+        }
+        panel
+    };
+    groups.iter().enumerate().map(panel).collect()
 }
 
 /// Headline group: weighted where the cycle is, else the whole cycle.

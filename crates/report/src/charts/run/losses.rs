@@ -1,13 +1,13 @@
-//! Loss power by group of components, stacked over time: a panel for each car, all on one scale.
+//! Energy that each group of components has lost since the start, as fuel of that energy: a panel for each car, all on one scale.
 
 use super::PlotRun;
 use super::timeline::{HEADED, PLOT_TOP, PLOT_WIDE, phases, time_axis};
 use crate::charts::engine::{
-    Axis, BELOW, Block, Chart, Entry, Fill, PLOT_LEFT, Panel, Rect, Shape, Style, cell, group_line,
-    number,
+    Axis, BELOW, Chart, End, INK, PLOT_LEFT, Panel, Rect, cell, group_line, number, round_step,
+    stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use crate::number::{capital, list_of, words};
+use crate::number::{capital, grouped, list_of, words};
 use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_output::table::distinct;
 use cvtcycle_output::{Component, History};
@@ -113,39 +113,84 @@ impl<'a> Binned<'a> {
         energies.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Loss power of each group in each bin, then of all, W.
-    fn heights(&self) -> impl Iterator<Item = Vec<f64>> {
-        self.bins.mean_w.iter().map(|watts| {
-            let of = |(_, parts): &(LossGroup, Vec<Component>)| {
-                parts.iter().map(|&c| watts[c as usize]).sum::<f64>()
-            };
-            let groups: Vec<f64> = self.groups.iter().map(of).collect();
-            let all = groups.iter().sum();
-            groups.into_iter().chain([all]).collect()
-        })
+    /// Energy that each group, then all, has lost at the end of each bin, kJ.
+    fn lost_kj(&self) -> Vec<Vec<f64>> {
+        let mut sums = vec![0.0; self.groups.len()];
+        let bins = self.bins.mean_w.iter().zip(&self.bins.seconds);
+        let at_end = |(watts, seconds): (&Means, &f64)| {
+            for (sum, (_, parts)) in sums.iter_mut().zip(&self.groups) {
+                let watts: f64 = parts.iter().map(|&c| watts[c as usize]).sum();
+                *sum += 1e-3 * watts * seconds;
+            }
+            let all = sums.iter().sum();
+            sums.iter().copied().chain([all]).collect()
+        };
+        bins.map(at_end).collect()
     }
 }
 
-/// Loss power of the transmissions over time, stacked by group in the order of the power flow.
+/// Energies as fuel: unit, and the factor on the kJ of each car. Without the fuel of a car they stay energies.
+struct AsFuel {
+    unit: &'static str,
+    factors: Vec<f64>,
+}
+
+impl AsFuel {
+    fn new(runs: &[PlotRun]) -> Self {
+        let factors = runs
+            .iter()
+            .map(PlotRun::fuel_of_kj)
+            .collect::<Option<Vec<_>>>();
+        match (factors, runs.first()) {
+            (Some(factors), Some(run)) => AsFuel {
+                unit: run.fuel_unit,
+                factors,
+            },
+            _ => AsFuel {
+                unit: "kJ",
+                factors: vec![1.0; runs.len()],
+            },
+        }
+    }
+}
+
+/// Room right of a panel for the names at the ends of its lines with their numbers, pixels.
+const NAMES: f64 = 14.0;
+
+/// Energy that each group of components of each transmission has lost since the start, as fuel of that energy; each line has its name and number at
+/// its end.
 pub fn losses(runs: &[PlotRun]) -> Picture {
     let cars: Vec<Binned> = runs.iter().map(Binned::new).collect();
-    let all = cars.iter().flat_map(Binned::heights);
-    let y = Axis::round(
-        "Loss power [W]",
-        all.filter_map(|of| of.last().copied()).chain([0.0]),
-        6,
-    );
+    let fuel = AsFuel::new(runs);
+    let lost = |(car, factor): (&Binned, &f64)| -> Vec<Vec<f64>> {
+        let at_end = car.lost_kj().into_iter();
+        at_end
+            .map(|of| of.iter().map(|kj| kj * factor).collect())
+            .collect()
+    };
+    let lost: Vec<Vec<Vec<f64>>> = cars.iter().zip(&fuel.factors).map(lost).collect();
+    let most = lost.iter().filter_map(|of| of.last()?.last().copied());
+    let most = most.fold(0.0, f64::max);
+    let digits = decimals(most);
+    let y_title = format!("Energy lost, as fuel [{}]", fuel.unit);
+    let y = Axis::round(&y_title, [0.0, most].into_iter(), 6);
     let several = cars.len() > 1;
     let tall = TALL[usize::from(several)];
     let top = PLOT_TOP + if several { HEADED } else { 0.0 };
+    let ends: Vec<Vec<End>> = cars
+        .iter()
+        .zip(&lost)
+        .map(|(car, lost)| ends(car, lost, digits))
+        .collect();
+    let names = ends
+        .iter()
+        .flatten()
+        .map(|end| text_width(&end.text, 11.0) + NAMES);
+    let wide = PLOT_WIDE - names.fold(0.0, f64::max);
     let mut first = 2;
-    let panel = |(k, car): (usize, &Binned)| {
-        let rect = Rect::new(
-            PLOT_LEFT,
-            top + (tall + 14.0 + HEADED) * k as f64,
-            PLOT_WIDE,
-            tall,
-        );
+    let panel = |(k, (car, ends)): (usize, (&Binned, Vec<End>))| {
+        let pitch = tall + 14.0 + HEADED;
+        let rect = Rect::new(PLOT_LEFT, top + pitch * k as f64, wide, tall);
         let mut panel = Panel::new(rect, time_axis(car.run.history), y.clone())
             .over_table()
             .x_labels(k + 1 == cars.len())
@@ -155,68 +200,90 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
         }
         panel.columns = (first..=first + car.groups.len()).collect();
         first += car.groups.len() + 1;
-        layers(&mut panel, car);
+        for (g, end) in ends.iter().enumerate() {
+            let start = car.bins.edges_s.first().map(|s| (*s, 0.0));
+            let points = car.bins.edges_s.iter().skip(1).zip(&lost[k]);
+            let points = points.map(|(s, lost)| (*s, lost[g]));
+            let line = stroke(
+                end.colour,
+                if g == car.groups.len() { 2.2 } else { 1.6 },
+                &[],
+            );
+            panel.series(start.into_iter().chain(points).collect(), line);
+        }
+        panel.ends = ends;
         phases(&mut panel, car.run.history, k == 0 && !several);
         panel
     };
-    let panels: Vec<Panel> = cars.iter().enumerate().map(panel).collect();
+    let panels = cars.iter().zip(ends).enumerate().map(panel);
+    let mut panels: Vec<Panel> = panels.collect();
     let bottom = panels.last().map_or(top, |panel| panel.rect.bottom + BELOW);
-    let groups = distinct(
-        cars.iter()
-            .flat_map(|car| car.groups.iter().map(|(group, _)| *group)),
-    );
-    let entry = |group: LossGroup| {
-        let own = cars.first().filter(|_| !several);
-        let parts = own.and_then(|car| Some((car, &car.groups.iter().find(|of| of.0 == group)?.1)));
-        let name = parts.map_or_else(
-            || capital(group.name()),
-            |(car, parts)| described(group, car.energy_j(parts), car.total_j()),
-        );
-        Entry::fill(Fill::plain(group_line(group)), name)
-    };
-    // Listed from the top, as in the stack.
-    let entries: Vec<Entry> = groups.iter().rev().map(|group| entry(*group)).collect();
     let lead = cars.iter().map(in_words).collect::<Vec<_>>().join(". ");
-    let mut panels = panels;
     if let Some(last) = panels.last_mut() {
         last.below = bottom - last.rect.bottom + 8.0;
     }
     let subject = match runs {
         [run] => run.name.to_owned(),
-        _ => "Loss power over time, one scale; stacked in the order of the power flow".to_owned(),
+        _ => "Energy of the losses as fuel, one scale".to_owned(),
     };
-    Chart::new(title(&cars), subject, PLOT_LEFT)
+    Chart::new(title(&cars, &fuel, digits), subject, PLOT_LEFT)
         .lead(lead)
         .panels(panels)
-        .foot(Block::legend((PLOT_LEFT, PLOT_WIDE), "", entries))
-        .picture(table(&cars))
+        .picture(table(&cars, &lost, (fuel.unit, digits)))
+}
+
+/// Decimals of the parts of a whole: to a hundredth of its size.
+fn decimals(most: f64) -> usize {
+    match most > 0.0 {
+        true => (-round_step(0.005 * most).log10()).ceil().clamp(0.0, 3.0) as usize,
+        false => 2,
+    }
+}
+
+/// Names of the groups and of all losses at the ends of their lines, with their numbers.
+fn ends(car: &Binned, lost: &[Vec<f64>], digits: usize) -> Vec<End> {
+    let groups = car.groups.iter();
+    let groups = groups.map(|(group, _)| (capital(group.name()), group_line(*group)));
+    let names = groups.chain([("All".to_owned(), INK)]).enumerate();
+    let at_end = car.bins.edges_s.last().zip(lost.last());
+    let end = |(g, (name, colour)): (usize, (String, &'static str))| {
+        let at = at_end.map_or((f64::NAN, f64::NAN), |(s, lost)| (*s, lost[g]));
+        let text = format!("{name} {}", grouped(at.1, digits));
+        End { at, text, colour }
+    };
+    names.map(end).collect()
 }
 
 /// Share from which a part is most of a whole.
 const MOST: f64 = 0.5;
 
 /// Title: losses of each car, and the largest group of the first one.
-fn title(cars: &[Binned]) -> String {
-    let some = |car: &&Binned| car.total_j() > 0.0;
-    let Some(first) = cars.first().filter(some) else {
+fn title(cars: &[Binned], fuel: &AsFuel, digits: usize) -> String {
+    let some = |(car, _): &(&Binned, &f64)| car.total_j() > 0.0;
+    let number = |joule: f64, factor: f64| grouped(1e-3 * joule * factor, digits);
+    let mut all = cars.iter().zip(&fuel.factors);
+    let Some((first, factor)) = all.next().filter(some) else {
         return "No losses are known".to_owned();
     };
-    let own = format!("{} loses {}", first.run.name, kilojoule(first.total_j()));
-    let others = cars[1..].iter().filter(some);
-    let others: Vec<String> = others
-        .map(|car| format!("{} {}", car.run.name, kilojoule(car.total_j())))
-        .collect();
+    let total = first.total_j();
+    let own = format!(
+        "{} loses {} {}",
+        first.run.name,
+        number(total, *factor),
+        fuel.unit
+    );
+    let others = all.filter(some);
+    let others =
+        others.map(|(car, factor)| format!("{} {}", car.run.name, number(car.total_j(), *factor)));
+    let others: Vec<String> = others.collect();
     match (first.largest_group(), others.is_empty()) {
         (Some((group, joule)), true) => {
-            let word = match joule > MOST * first.total_j() {
+            let word = match joule > MOST * total {
                 true => "most of it",
                 false => "the largest part",
             };
-            format!(
-                "{own}, {word} in {} ({})",
-                words(group.name()),
-                kilojoule(joule)
-            )
+            let name = words(group.name());
+            format!("{own}, {word} in {name} ({})", number(joule, *factor))
         }
         _ => format!("{own}, {}", list_of(&others)),
     }
@@ -234,9 +301,13 @@ fn in_words(car: &Binned) -> String {
     )
 }
 
-/// Bins of the first car with the means of each car's groups; cells of a car with other bins are empty.
-fn table(cars: &[Binned]) -> PictureTable {
-    let mut table = PictureTable::new(&[("Middle of the stretch", "s"), ("Length", "s")]);
+/// Ends of the bins of the first car with all that each group of each car has lost by then; cells of a car with other bins are empty.
+fn table(
+    cars: &[Binned],
+    lost: &[Vec<Vec<f64>>],
+    (unit, digits): (&'static str, usize),
+) -> PictureTable {
+    let mut table = PictureTable::new(&[("Time", "s"), ("Length of the stretch", "s")]);
     for car in cars {
         let names = car.groups.iter().map(|(group, _)| capital(group.name()));
         let names = names.chain(["All".to_owned()]);
@@ -244,55 +315,31 @@ fn table(cars: &[Binned]) -> PictureTable {
             1 => name,
             _ => format!("{}: {}", car.run.name, name.to_lowercase()),
         };
-        table.columns.extend(names.map(|name| (of_car(name), "W")));
+        table.columns.extend(names.map(|name| (of_car(name), unit)));
     }
     let Some(first) = cars.first() else {
         return table;
     };
     let edges = &first.bins.edges_s;
-    let heights: Vec<Vec<Vec<f64>>> = cars.iter().map(|car| car.heights().collect()).collect();
+    let step = 0.1_f64.powi(digits as i32 + 1);
     let near = |a: f64, b: Option<&f64>| b.is_some_and(|b| (a - b).abs() < 0.5);
     for (k, seconds) in first.bins.seconds.iter().enumerate() {
-        let numbers = [0.5 * (edges[k] + edges[k + 1]), *seconds];
-        let mut cells: Vec<String> = numbers.iter().map(|x| cell(*x, 0.1)).collect();
-        for (car, heights) in cars.iter().zip(&heights) {
+        let mut cells: Vec<String> = [edges[k + 1], *seconds].map(|x| cell(x, 0.1)).to_vec();
+        for (car, lost) in cars.iter().zip(lost) {
             let here = near(edges[k + 1], car.bins.edges_s.get(k + 1));
-            let own = heights.get(k).filter(|_| here);
+            let own = lost.get(k).filter(|_| here);
             let count = car.groups.len() + 1;
             let own = own.map_or_else(
                 || vec![String::new(); count],
-                |own| own.iter().map(|x| cell(*x, 0.1)).collect(),
+                |own| own.iter().map(|x| cell(*x, step)).collect(),
             );
             cells.extend(own);
         }
         table.push(cells);
     }
     table.note(format!(
-        "Means over stretches of the cycle, {BINS} at most; the picture is drawn from them. They keep the energy of every component."
+        "Sums over stretches of the cycle, {BINS} at most; the picture is drawn from them. They keep the energy of every component."
     ))
-}
-
-/// Adds the groups as stacked layers.
-fn layers(panel: &mut Panel, car: &Binned) {
-    let mut base = vec![0.0; car.bins.mean_w.len()];
-    for (g, (group, _)) in car.groups.iter().enumerate() {
-        let mut outline = Vec::new();
-        let mut any = false;
-        let bins = car.bins.edges_s.windows(2).zip(car.heights());
-        for ((span, heights), low) in bins.zip(&mut base) {
-            let high = *low + heights[g];
-            any |= high > *low;
-            outline.extend(span.iter().map(|edge| (*edge, *low, high)));
-            *low = high;
-        }
-        if any {
-            let fill = Fill::plain(group_line(*group));
-            panel.add(
-                Shape::between(&outline),
-                Style::edged(fill, 0.2).class("layer"),
-            );
-        }
-    }
 }
 
 /// A group with its energy and share.

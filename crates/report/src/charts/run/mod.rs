@@ -32,8 +32,19 @@ pub struct PlotRun<'a> {
     pub group_fuel: Vec<(String, f64)>,
     /// Unit of that fuel, L/100 km, or L/h for a drive without way.
     pub fuel_unit: &'static str,
+    /// Energy of the fuel of the cycle, kJ.
+    pub fuel_energy_kj: f64,
     /// Published numbers of this drive.
     pub published: PublishedDrive,
+}
+
+impl PlotRun<'_> {
+    /// Fuel of an energy, in the unit of the fuel for each kJ; `None` without fuel.
+    fn fuel_of_kj(&self) -> Option<f64> {
+        let total = self.group_fuel.iter().find(|(name, _)| name == "total");
+        let fuel = total?.1 / self.fuel_energy_kj;
+        (fuel.is_finite() && fuel > 0.0).then_some(fuel)
+    }
 }
 
 /// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km, or L/h for a drive without way: for [`PlotRun::group_fuel`].

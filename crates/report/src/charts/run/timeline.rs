@@ -3,7 +3,7 @@
 use super::PlotRun;
 use crate::charts::engine::{
     Axis, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style,
-    WIDTH, at, cell, label_ends, range, stroke, text_width,
+    WIDTH, at, cell, range, stroke, text_width,
 };
 use crate::charts::lines::{PrintedMark, printed_entries};
 use crate::charts::picture::{Picture, PictureTable};
@@ -161,7 +161,7 @@ impl Strip {
                 })
             });
             let ends = ends.collect();
-            label_ends(&mut panel, ends);
+            panel.ends = ends;
         }
         panel
     }
@@ -290,8 +290,9 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
         // A name cut to a few letters is useless.
         let readable = short == name || text_width(&short, PHASE_TEXT) > 40.0;
         if named && parts.len() > 1 && readable {
-            let place = at(from, f64::INFINITY).shift(0.5 * wide, -5.0);
-            panel.label(Label::new(place, short).middle().class("phase"));
+            let place = at(0.5 * (from + to), f64::INFINITY).shift(0.0, -5.0);
+            let name = Label::new(place, name).middle().class("phase");
+            panel.label(name.cut(Cut::End, wide - 4.0));
         }
         from = to;
     }

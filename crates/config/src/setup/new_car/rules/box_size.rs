@@ -13,6 +13,8 @@ use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 
 /// Displacement of a pump for a torque, cm3 a turn and Nm (NC-11).
 const PUMP_CC_NM: f64 = 8.0 / 130.0;
+/// Least displacement of a pump, cm3 a turn (NC-11).
+const LEAST_PUMP_CC: f64 = 6.0;
 /// Speeds at which full load holds the engine against a car at rest, rpm: with a converter, with a clutch (NC-12).
 const STALL_RPM: [f64; 2] = [2400.0, 2500.0];
 /// Safety at the highest torque where the clamp law has none (NC-13).
@@ -37,12 +39,19 @@ impl Given<'_> {
             return;
         }
         if self.text("pump").is_none() {
-            self.sized(
-                "transmission.cvt.pump.displacement_cc_rev",
-                format!("{:.1}", PUMP_CC_NM * highest_nm),
-                format!(
+            let of_torque = PUMP_CC_NM * highest_nm;
+            let source = match of_torque < LEAST_PUMP_CC {
+                true => format!(
+                    "NC-11: {of_torque:.1} by {highest_nm:.0} Nm, but at least 6, 5 to 7: the smallest box that was measured has 6.1 (Justy); 4.5 at idle go into lubrication and leaks alone"
+                ),
+                false => format!(
                     "NC-11: {highest_nm:.0} Nm, 0.062 cc/rev a Nm, 0.06 to 0.095: one car of 1995 has 8 for 130 Nm, a box for 200 Nm 19 (SAE 2004-40CVT-49)"
                 ),
+            };
+            self.sized(
+                "transmission.cvt.pump.displacement_cc_rev",
+                format!("{:.1}", of_torque.max(LEAST_PUMP_CC)),
+                source,
             );
         }
         self.launch(cvt, &line);

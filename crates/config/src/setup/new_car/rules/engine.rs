@@ -15,6 +15,13 @@ const USUAL_TORQUE: (f64, f64) = (1.09, 0.68);
 /// Power has its unit: data sheets have kW, hp or PS, and a number of one is a likely power in the others, so that no doubt finds it.
 const POWER_HINT: &str = "write its unit: 104kW@6400, 140hp@6400 or 142PS@6400";
 
+/// Cylinders of an engine of that size, cm3 (NC-9).
+fn cylinders(cc: f64) -> f64 {
+    let more = [1050.0, 2700.0, 4200.0].into_iter();
+    let found = more.zip([3.0, 4.0, 6.0]).find(|(up_to, _)| cc <= *up_to);
+    found.map_or(8.0, |(_, count)| count)
+}
+
 impl Given<'_> {
     /// A number and the numbers after its @, such as 172@3800-4400.
     pub(super) fn at_speed(&mut self, option: &str, units: &Units) -> Option<(f64, Vec<f64>)> {
@@ -54,7 +61,10 @@ impl Given<'_> {
         };
         let litres = cc / 1e3;
         let (stroke_mm, of_stroke) = match self.answers.engine_like {
-            None => (exp(ln(cc * 1e3 / PI) / 3.0), "NC-9, ASSUMED"), // four cylinders of pi/4 s^3
+            None => {
+                let of_cylinder_mm3 = cc * 1e3 / cylinders(cc);
+                (exp(ln(of_cylinder_mm3 * 4.0 / PI) / 3.0), "NC-9, ASSUMED") // pi/4 s^3
+            }
             Some(_) => {
                 let named = cc / self.inherited("engine.displacement_cc");
                 let stroke_mm = self.inherited("engine.stroke_mm") * exp(ln(named) / 3.0);

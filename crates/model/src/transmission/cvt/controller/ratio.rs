@@ -7,12 +7,14 @@
 //! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
 //! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-14 and PC-1 to PC-6 | derived: definition |
 //! | RC-15 | a step for which a ratio is demanded goes towards it within RC-4 and RC-5, in place of RC-1 to RC-3 and RC-6 to RC-14 | derived: definition; the box's own limits hold for any controller |
+//! | RC-16 | a ratio that is imposed (RC-12) is that of the whole step, its end included | derived: definition |
+//! | RC-17 | within a step ln I waits as RC-6 and RC-10 have it, goes to ln I* at the rates of RC-4 and RC-5 until it meets it, then follows it within these; ln I* linear between its values by speeds and demand at both ends of the step, level where I* is at an end of the ratio; losses at exp(mean of ln I), the next step from its end | derived: integral of a way of straight parts, so that the rates hold at every instant and not once a step |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
-//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does at the end of the step, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart, n_p the speed of the primary; none while the belt is at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
-//! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
-//! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
+//! | RC-6 | no up-shift before the launch clutch has locked, which it has within a step once I w_s has come to the engine's speed before it | source: thesis 1.1.2, order A-B-C-D of the variogram |
+//! | RC-9 | RC-1 and RC-2 look at u, tau du/dt = P/P_max - u, solved over a step in which P is linear; RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
 //! | RC-5 | and <= V_left / (A 2 tan th \|dR/d ln I\|), V_left by PU-7 at the end of the step, with the pressure that this rate needs (PC-5): the largest rate that fulfils it | derived: thesis 9.1; at the end of the step as all else in it; solved to 1e-6 of the demanded flow |
@@ -132,12 +134,31 @@ impl<R: Real> ColdRise<R> {
     }
 }
 
-/// Inputs of the controller.
+/// Inputs of the target at the beginning of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RatioDemand<R: Real = f64> {
+pub struct Moment<R: Real = f64> {
     /// Speed of the secondary once the clutch has locked, rad/s.
     pub secondary_rad_s: R,
-    /// Speed of the primary, rad/s.
+    /// Road speed, m/s.
+    pub speed_m_s: f64,
+    /// Wheel power asked for, W.
+    pub power_w: R,
+    /// Share of rated power that RC-1 and RC-2 look at (RC-9).
+    pub share: R,
+    /// Lowest speed at which full load gives the power asked for, rad/s.
+    pub full_load_rad_s: R,
+    /// Engine speed of the shift map, rad/s (RC-14); `None` without one.
+    pub mapped_rad_s: Option<R>,
+}
+
+/// Inputs of the controller: those that change within a step are those at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RatioDemand<R: Real = f64> {
+    /// The same at the beginning of the step; `None` where nothing changes within it.
+    pub begins: Option<Moment<R>>,
+    /// Speed of the secondary once the clutch has locked, rad/s.
+    pub secondary_rad_s: R,
+    /// Speed of the primary with the ratio before the step, its mean over the step, rad/s.
     pub primary_rad_s: R,
     /// Road speed, m/s.
     pub speed_m_s: f64,
@@ -159,6 +180,8 @@ pub struct RatioDemand<R: Real = f64> {
     pub flow_up_per_s: R,
     /// True with the launch clutch locked.
     pub coupled: R::Mask,
+    /// Share of the step after which a launch clutch that slips has locked; 1 and more where it does not within the step (RC-6).
+    pub locks_at: R,
     /// Direction of the last change: 1 towards low, -1 towards high, 0 before the first.
     pub last_direction: R::PerLane<i8>,
     /// Primary speed up to which the ratio turns round at once, rad/s.
@@ -197,89 +220,296 @@ impl<R: Real> RatioControl<R> {
         share.gt(self.gentle_share).select(risen, speed)
     }
 
-    /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
-    pub fn filtered_share(&self, before: R, asked: R, dt_s: f64) -> R {
+    /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the ones asked for at its beginning and end, between which
+    /// the demand is linear (RC-9).
+    pub fn filtered_share(&self, before: R, asked: [R; 2], dt_s: f64) -> R {
         let filters = self.filter_s.gt(0.0);
         if !filters.any() {
-            return asked;
+            return asked[1];
         }
-        let filtered = before + (asked - before) * (1.0 - (-dt_s / self.filter_s).exp()); // RC-9
-        filters.select(filtered, asked)
+        let lag = (asked[1] - asked[0]) / dt_s * self.filter_s;
+        let settled = asked[1] - lag;
+        let filtered = settled + (before - asked[0] + lag) * (-dt_s / self.filter_s).exp(); // RC-9
+        filters.select(filtered, asked[1])
     }
 
-    /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
-    pub fn step(&self, d: &RatioDemand<R>) -> (R, R, R::Mask) {
+    /// Way of the ratio within the step (RC-4, RC-5, RC-17).
+    pub fn step(&self, d: &RatioDemand<R>) -> Shifted<R> {
         let before = d.ratio_before;
         let zero = before.splat(0.0);
         let rests = zero.ge(d.primary_rad_s); // RC-4
         if rests.all() {
-            return (before, zero, before.splat_mask(false));
+            return Shifted::none(before);
         }
-        let wanted = (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low);
-        let too_early = !d.coupled & before.gt(wanted); // RC-6
-        let wanted = too_early.select(before, wanted);
-        let mut stays = rests | wanted.bits_eq(before);
+        let wanted = self.wanted(d);
+        let (mut begins, mut bends_at) = (wanted, before.splat(1.0));
+        if let Some(moment) = &d.begins {
+            let at = d.at(moment);
+            begins = self.wanted(&at);
+            bends_at = self.bends_at([&at, d], [begins, wanted]);
+        }
+        let stays = rests | (wanted.bits_eq(before) & begins.bits_eq(before));
         if stays.all() {
-            return (before, zero, before.splat_mask(false));
+            return Shifted::none(before);
         }
-        let change = (wanted / before).ln();
-        stays = stays | self.stays(d, wanted, change); // RC-10
-        if stays.all() {
-            return (before, zero, before.splat_mask(false));
+        self.limited(d, ([begins, wanted], bends_at), stays)
+    }
+
+    /// Share of a step at which the target leaves an end of the ratio, or comes to one, with engine and car speeds that are linear between both ends of the
+    /// step; 1 where it does neither.
+    fn bends_at(&self, ends: [&RatioDemand<R>; 2], wanted: [R; 2]) -> R {
+        let one = wanted[0].splat(1.0);
+        let at_end = |k: usize| wanted[k].le(self.high) | wanted[k].ge(self.low);
+        let (first, last) = (at_end(0), at_end(1));
+        let bends = (first & !last) | (last & !first);
+        if !bends.any() {
+            return one;
         }
-        self.limited(d, (wanted, change), stays)
+        let ratio = first.select(wanted[0], wanted[1]);
+        let over = |d: &RatioDemand<R>| self.target_rad_s(d) - ratio * d.secondary_rad_s;
+        let (from, to) = (over(ends[0]), over(ends[1]));
+        let share = (from / (from - to)).clamp(0.0, 1.0);
+        bends.select(share, one)
+    }
+
+    /// Ratio at which the engine has its target speed at the end of a step.
+    fn wanted(&self, d: &RatioDemand<R>) -> R {
+        (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low)
     }
 
     /// The same towards a ratio that is asked for from outside (RC-15).
-    pub fn paced(&self, d: &RatioDemand<R>, asked: R) -> (R, R, R::Mask) {
+    pub fn paced(&self, d: &RatioDemand<R>, asked: R) -> Shifted<R> {
         let before = d.ratio_before;
         let wanted = asked.clamp(self.high, self.low);
         let stays = wanted.bits_eq(before);
         if stays.all() {
-            return (wanted, before.splat(0.0), before.splat_mask(false));
+            return Shifted {
+                mean: wanted,
+                end: wanted,
+                ..Shifted::none(before)
+            };
         }
-        self.limited(d, (wanted, (wanted / before).ln()), stays)
+        let away = (wanted / before).ln();
+        let at_once = RatioDemand {
+            coupled: before.splat_mask(true),
+            ..d.clone()
+        };
+        let whole = before.splat(1.0);
+        let way = self.way(&at_once, ([away; 3], whole), before.splat(0.0), stays);
+        self.shifted(before, [wanted; 2], &way, stays)
     }
 
-    /// As much of a change of ln I, to a wanted ratio, as the rates allow (RC-4, RC-5); none where the ratio stays.
-    fn limited(
+    /// As much of the way from the ratio before to the ones wanted at the beginning and end of the step as the rates allow; none where the ratio stays.
+    #[inline(never)]
+    fn limited(&self, d: &RatioDemand<R>, ends: ([R; 2], R), stays: R::Mask) -> Shifted<R> {
+        d.ratio_before
+            .vectorize(|| self.limited_between(d, ends, stays))
+    }
+
+    fn limited_between(
         &self,
         d: &RatioDemand<R>,
-        (wanted, change): (R, R),
+        (wanted, bends_at): ([R; 2], R),
         stays: R::Mask,
-    ) -> (R, R, R::Mask) {
+    ) -> Shifted<R> {
         let before = d.ratio_before;
-        let zero = before.splat(0.0);
-        let pace = (d.primary_rad_s / self.rate_speed_rad_s).clamp(0.0, 1.0);
-        let (up, down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
-        let (flow_up, flow_down) = (d.flow_up_per_s, d.flow_down_per_s);
-        let short_down = change.gt(0.0) & down.gt(flow_down) & change.gt(flow_down * d.dt_s);
-        let short_up = zero.gt(change) & up.gt(flow_up) & (-change).gt(flow_up * d.dt_s);
-        let (up, down) = (flow_up.min(up), flow_down.min(down)); // RC-5
-        let (least, most) = (-up * d.dt_s, down * d.dt_s);
-        let free = change.ge(least) & most.ge(change);
-        let (mut ratio, mut made) = (wanted, change);
-        if !(free | stays).all() {
-            let held = change.clamp(least, most);
-            let moved = (before * held.exp()).clamp(self.high, self.low);
-            ratio = free.select(wanted, moved);
-            made = free.select(change, held);
-        }
-        (
-            stays.select(before, ratio),
-            stays.select(zero, made),
-            !stays & (short_down | short_up),
-        )
+        let away = R::ln_array([wanted[0] / before, wanted[1] / before]);
+        let waits_s = self.waits_s(d, wanted[1], away);
+        // At an end of the ratio the target stays.
+        let at_end = wanted[0].le(self.high) | wanted[0].ge(self.low);
+        let bend = (at_end & bends_at.lt(1.0)).select(away[0], away[1]);
+        let way = self.way(d, ([away[0], bend, away[1]], bends_at), waits_s, stays);
+        self.shifted(before, wanted, &way, stays)
     }
 
-    /// True where a change of ln I is a reversal too small to be made (RC-10).
-    fn stays(&self, d: &RatioDemand<R>, wanted: R, change: R) -> R::Mask {
-        let direction = change.map_lanes(|lane| f64::from(*R::get(&d.last_direction, lane)));
-        change.splat(0.0).gt(direction * change)
-            & self.hysteresis.ge(change.abs())
-            & wanted.gt(self.high)
-            & self.low.gt(wanted)
-            & (d.ratio_before * d.secondary_rad_s).gt(d.free_up_to_rad_s)
+    /// Time for which a reversal waits, s (RC-10): until it is large enough, or there is none any more.
+    fn waits_s(&self, d: &RatioDemand<R>, wanted: R, away: [R; 2]) -> R {
+        let zero = wanted.splat(0.0);
+        let direction = zero.map_lanes(|lane| f64::from(*R::get(&d.last_direction, lane)));
+        let back = [-direction * away[0], -direction * away[1]];
+        let reverses = back[0].gt(0.0) | back[1].gt(0.0);
+        let free = wanted.le(self.high)
+            | wanted.ge(self.low)
+            | (d.ratio_before * d.secondary_rad_s).le(d.free_up_to_rad_s)
+            | zero.ge(self.hysteresis);
+        // A ratio that follows its target begins at it but for rounding, whose sign decides nothing.
+        let begins = back[0].ge(-AT_TARGET) & self.hysteresis.ge(back[0]);
+        let held = reverses & !free & begins;
+        if !held.any() {
+            return zero;
+        }
+        let whole = zero.splat(d.dt_s);
+        let grows = back[1].gt(self.hysteresis);
+        let turns = zero.gt(back[1]);
+        let apart = back[1] - back[0];
+        let until_large = d.dt_s * (self.hysteresis - back[0]) / apart;
+        let until_none = d.dt_s * back[0] / -apart;
+        let waits = grows.select(until_large, turns.select(until_none, whole));
+        held.select(waits, zero)
+    }
+
+    /// Way of ln I over a step to a target that is linear in it from one distance to another up to a share of the step, and from there to a third, after
+    /// a time of waiting (RC-17).
+    fn way(
+        &self,
+        d: &RatioDemand<R>,
+        (away, bends_at): ([R; 3], R),
+        waits_s: R,
+        stays: R::Mask,
+    ) -> Way<R> {
+        let zero = waits_s.splat(0.0);
+        let pace = (d.primary_rad_s / self.rate_speed_rad_s).clamp(0.0, 1.0);
+        let (up, down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
+        let by_flow = [up.gt(d.flow_up_per_s), down.gt(d.flow_down_per_s)];
+        let (up, down) = (d.flow_up_per_s.min(up), d.flow_down_per_s.min(down)); // RC-5
+        // RC-6: towards high once the launch clutch has locked.
+        let locks_s = d.dt_s * d.locks_at.clamp(0.0, 1.0);
+        let early = !d.coupled & zero.gt(away[2]) & locks_s.gt(waits_s);
+        let waits_s = early.select(locks_s, waits_s);
+        let opens = !d.coupled & d.locks_at.ge(1.0);
+        let rates = [opens.select(zero, up), down];
+        let first_s = d.dt_s * bends_at;
+        let whole = bends_at.ge(1.0);
+        let mut part = self.part(
+            (away[0], away[1] - away[0]),
+            (first_s, waits_s.min(first_s)),
+            rates,
+        );
+        let mut mean = part.area / d.dt_s;
+        let mut change = part.change;
+        if !whole.all() {
+            let left_s = d.dt_s - first_s;
+            let from = away[1] - part.change;
+            let waits_s = (waits_s - first_s).max(0.0);
+            let second = self.part((from, away[2] - away[1]), (left_s, waits_s), rates);
+            mean = whole.select(mean, mean + (change * left_s + second.area) / d.dt_s);
+            change = whole.select(change, change + second.change);
+            part.down = whole.select(part.down, second.down);
+            part.up = whole.select(part.up, second.up);
+            part.tracks = whole.select(part.tracks, second.tracks);
+        }
+        Way {
+            mean,
+            change: stays.select(zero, change),
+            tracks: part.tracks,
+            held: !stays & ((by_flow[0] & part.up) | (by_flow[1] & part.down)),
+        }
+    }
+
+    /// Way of ln I within a time, s, to a target at a distance, which changes linearly by some, after waiting for a part of the time: as fast as the rates
+    /// towards high and low, 1/s, allow until it meets the target, then with it within the rates.
+    fn part(
+        &self,
+        (away, shifts): (R, R),
+        (time_s, waits_s): (R, R),
+        [up, down]: [R; 2],
+    ) -> Part<R> {
+        let zero = away.splat(0.0);
+        let slope = time_s.gt(0.0).select(shifts / time_s, zero);
+        let left_s = time_s - waits_s;
+        let first = away + slope * waits_s;
+        let (is_down, is_up) = (first.gt(0.0), zero.gt(first));
+        let rate = is_down.select(down, is_up.select(-up, zero));
+        let closing = rate - slope;
+        let meets_s = first / closing;
+        let meets = (closing * first).gt(0.0) & left_s.gt(meets_s);
+        let still = zero.ge(first) & first.ge(0.0);
+        let moves_s = still.select(zero, meets.select(meets_s, left_s));
+        let follows = slope.clamp(-up, down);
+        // A reversal within the step waits for the next one (RC-10).
+        let moved = (rate * moves_s).abs().gt(MIN_CHANGE);
+        let reverses = zero.gt(follows * rate) & moved & self.hysteresis.gt(0.0);
+        let follows = reverses.select(zero, follows);
+        let then_s = left_s - moves_s;
+        let is_met = still | meets;
+        Part {
+            change: rate * moves_s + follows * then_s,
+            area: rate * moves_s * (0.5 * moves_s + then_s) + 0.5 * follows * then_s * then_s,
+            tracks: is_met & follows.bits_eq(slope),
+            down: (is_down & !is_met) | (is_met & slope.gt(down)),
+            up: (is_up & !is_met) | (is_met & (-slope).gt(up)),
+        }
+    }
+
+    /// The ratios of a way; none of it where the ratio stays.
+    fn shifted(&self, before: R, wanted: [R; 2], way: &Way<R>, stays: R::Mask) -> Shifted<R> {
+        let [mean, end] = R::exp_array([way.mean, way.change]);
+        let within = |factor: R| (before * factor).clamp(self.high, self.low);
+        Shifted {
+            mean: stays.select(before, within(mean)),
+            end: stays.select(before, way.tracks.select(wanted[1], within(end))),
+            change: way.change,
+            held: way.held,
+        }
+    }
+}
+
+/// Way of ln I within a part of a step.
+struct Part<R: Real> {
+    /// Its change.
+    change: R,
+    /// Integral of the change since its beginning, s.
+    area: R,
+    /// True where it ends at the target.
+    tracks: R::Mask,
+    /// True where the rate towards low is what holds it back, ...
+    down: R::Mask,
+    /// ... or that towards high.
+    up: R::Mask,
+}
+
+/// Way of ln I within a step.
+struct Way<R: Real> {
+    /// Mean of its change since the beginning of the step.
+    mean: R,
+    /// Whole change.
+    change: R,
+    /// True where the target is reached at the end.
+    tracks: R::Mask,
+    /// True where pump flow holds it back.
+    held: R::Mask,
+}
+
+/// Ratio in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shifted<R: Real = f64> {
+    /// Mean over the step: what the belt runs at.
+    pub mean: R,
+    /// At the end of the step: where the next one begins.
+    pub end: R,
+    /// Change of ln I from the beginning to the end.
+    pub change: R,
+    /// True where pump flow held it back.
+    pub held: R::Mask,
+}
+
+#[physics]
+impl<R: Real> Shifted<R> {
+    /// No shift.
+    pub fn none(ratio: R) -> Self {
+        Shifted {
+            mean: ratio,
+            end: ratio,
+            change: ratio.splat(0.0),
+            held: ratio.splat_mask(false),
+        }
+    }
+}
+
+#[physics]
+impl<R: Real> RatioDemand<R> {
+    /// The demand at the beginning of the step.
+    pub(in crate::transmission::cvt) fn at(&self, begins: &Moment<R>) -> Self {
+        RatioDemand {
+            begins: None,
+            secondary_rad_s: begins.secondary_rad_s,
+            speed_m_s: begins.speed_m_s,
+            power_w: begins.power_w,
+            share: begins.share,
+            full_load_rad_s: begins.full_load_rad_s,
+            mapped_rad_s: begins.mapped_rad_s,
+            ..self.clone()
+        }
     }
 }
 
@@ -292,15 +522,21 @@ const ABOVE_LOCK: f64 = 1.006;
 /// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
 const MIN_GENTLE_SHARE: f64 = 0.01;
 
-/// Change of ln I that counts as one (RC-10).
-const MIN_CHANGE: f64 = 1e-4;
+/// Change of ln I within a step that counts as one: less is rounding (RC-10).
+const MIN_CHANGE: f64 = 1e-6;
 
-/// Direction of the last change, after a change of ln I (RC-10).
+/// Distance in ln I from which a ratio counts as away from its target (RC-10).
+const AT_TARGET: f64 = 1e-9;
+
+/// Rate of ln I that counts as a change, 1/s (RC-10).
+const MIN_RATE_PER_S: f64 = 1e-4;
+
+/// Direction of the last change, after a rate of ln I, 1/s (RC-10).
 #[physics]
-pub fn direction_after<R: Real>(change: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
-    R::per_lane(|lane| match change.lane(lane) {
-        change if change > MIN_CHANGE => 1,
-        change if change < -MIN_CHANGE => -1,
+pub fn direction_after<R: Real>(rate_per_s: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
+    R::per_lane(|lane| match rate_per_s.lane(lane) {
+        rate if rate > MIN_RATE_PER_S => 1,
+        rate if rate < -MIN_RATE_PER_S => -1,
         _ => *R::get(last_direction, lane),
     })
 }
