@@ -6,7 +6,7 @@ use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::controller::{
-    ClampSignals, ColdRise, MapLaw, OperatingLine, RatioControl, RatioDemand,
+    ClampSignals, ColdRise, MapLaw, Moment, OperatingLine, RatioControl, RatioDemand,
 };
 
 fn control() -> RatioControl {
@@ -511,6 +511,68 @@ fn val_hysteresis_by_hand() {
         ..demand(0.15, 70.0, 2.35) // towards 2.57, held at the end
     };
     same(c.step(&low).end, 2.4);
+}
+
+/// RC-10 within a step (RC-17): a target that turns round while the ratio follows it is followed again from the hysteresis on, not from the next step.
+/// Truth: the same rule in 20 000 steps of a ratio that either waits or moves at its rate.
+#[test]
+fn val_reversal_within_a_step() {
+    let mut late = 0;
+    for (up_per_s, hysteresis) in [(0.35, 0.05), (0.35, 0.02), (2.0, 0.05), (2.0, 0.6)] {
+        let c = RatioControl {
+            up_per_s,
+            hysteresis,
+            ..control()
+        };
+        for (first, slope) in [(0.04, -0.3), (0.1, -0.5), (-0.02, 0.3), (-0.05, 0.7)] {
+            let before: f64 = 1.2;
+            let wanted = [before * f64::exp(first), before * f64::exp(first + slope)];
+            let mut d = RatioDemand {
+                last_direction: 1,
+                ..demand(0.15, 180.0 / wanted[1], before)
+            };
+            let begins = demand(0.15, 180.0 / wanted[0], before);
+            d.primary_rad_s = 180.0;
+            d.begins = Some(Moment {
+                secondary_rad_s: begins.secondary_rad_s,
+                speed_m_s: begins.speed_m_s,
+                power_w: begins.power_w,
+                share: begins.share,
+                full_load_rad_s: begins.full_load_rad_s,
+                mapped_rad_s: None,
+            });
+            if first < 0.0 {
+                d.last_direction = -1;
+            }
+            let way = c.step(&d);
+
+            let (steps, mut ln, mut area) = (20_000, 0.0, 0.0);
+            let dt_s = d.dt_s / f64::from(steps);
+            let mut direction = f64::from(d.last_direction);
+            let mut waits = false;
+            for k in 0..steps {
+                let target = first + slope * (f64::from(k) + 0.5) / f64::from(steps);
+                let away: f64 = target - ln;
+                waits |= away * direction < 0.0;
+                if waits && away.abs() > hysteresis {
+                    (waits, direction) = (false, away.signum());
+                }
+                let rate = if away > 0.0 { c.down_per_s } else { c.up_per_s };
+                if !waits {
+                    ln += away.signum() * (rate * dt_s).min(away.abs());
+                }
+                area += ln * dt_s;
+            }
+            let place = format!("{up_per_s} {hysteresis} {first} {slope}: {way:?}");
+            assert!((way.change - ln).abs() < 2e-4, "{place}: {ln}");
+            let mean = (way.mean / before).ln();
+            assert!((mean - area / d.dt_s).abs() < 2e-4, "{place}: {area}");
+            assert_eq!(way.last * direction > 0.0, way.last != 0.0, "{place}");
+            late += i32::from((ln - first - slope).abs() > 0.01);
+        }
+    }
+    // Some of them do not come back to the target within the step.
+    assert!((4..12).contains(&late), "{late}");
 }
 
 /// A target at which full load has a quarter more than the power asked for is not below the route, so that RC-3 need not be worked out there: cars,

@@ -178,6 +178,7 @@ fn val_shift_of_the_shipped_box() {
                             mean: d.belt_ratio,
                             end,
                             change: own,
+                            last: own,
                             held: own >= 0.5 * demand.flow_down_per_s * (1.0 - FLOW),
                         }
                     } else {

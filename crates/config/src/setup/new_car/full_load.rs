@@ -2,7 +2,7 @@
 
 use cvtcycle_model::keys::RPM;
 
-/// Power at the speed of highest torque, and above that of rated power, over rated power: data sheets round both.
+/// Power at the speed of highest torque over rated power: data sheets round both.
 const MOST_OF_RATED: f64 = 1.03;
 
 /// Idle, highest torque, rated power and the highest speed of an engine.
@@ -56,7 +56,11 @@ impl Curve {
             let most = at_rated + (at_plateau - at_rated).max(0.0) * (1.0 - share);
             match rpm < self.rated_rpm {
                 true => fallen_nm.min(most / rpm), // NC-2
-                false => fallen_nm.min(MOST_OF_RATED * at_rated / rpm),
+                // Rated power is the greatest one. Rounded down: a rounded-up row would move the speed of the greatest power to it.
+                false if rpm > self.rated_rpm => {
+                    (10.0 * fallen_nm.min(at_rated / rpm)).floor() / 10.0
+                }
+                false => fallen_nm,
             }
         }
     }

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | NC-1 | r = 3.05 D/(2 pi), D = rim + 2 width height | source: CO2MPAS |
-//! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P, up to n_P with no more power than P, nor than on the line from n_T to n_P where the plateau has more; above n_P at most 1.03 P | fitted to the CO2MPAS shape of the Rover; held power of charged engines derived from P |
+//! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P, up to n_P with no more power than P, nor than on the line from n_T to n_P where the plateau has more; above n_P at most P | fitted to the CO2MPAS shape of the Rover; held power of charged engines derived from P |
 //! | NC-3 | inertia 0.05 + 0.1 V kg m2, accessories 0.175 V + 0.2021 Nm, V in litres | source: CO2MPAS |
 //! | NC-4 | belt length by GE-3 from centre distance, low ratio and a least running radius of 30 mm; its mass 1.6 kg/m | derived; radius ASSUMED 25 to 35 mm |
 //! | NC-6 | heat capacity of the engine by rated power: block 0.525, oil 0.28 kJ/K per kW | derived from ADVISOR |

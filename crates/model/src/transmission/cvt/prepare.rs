@@ -160,12 +160,17 @@ fn shift<P: PrimeMover<R>, R: Real>(
     }
     let made = match held {
         Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
-        Some(hold) => Shifted {
-            mean: hold.ratio,
-            end: hold.end.unwrap_or(hold.ratio),
-            change: (hold.end.unwrap_or(hold.ratio) / kept.ratio).ln(),
-            held: zero.splat_mask(false),
-        }, // RC-12, RC-16
+        Some(hold) => {
+            let end = hold.end.unwrap_or(hold.ratio);
+            let change = (end / kept.ratio).ln();
+            Shifted {
+                mean: hold.ratio,
+                end,
+                change,
+                last: change,
+                held: zero.splat_mask(false),
+            } // RC-12, RC-16
+        }
         None => cvt.ratio.step(&demand),
     };
     let change = made.change;
@@ -177,7 +182,7 @@ fn shift<P: PrimeMover<R>, R: Real>(
         flow_m3_s: volume * per_s,
         held: made.held,
         kept: Shifting {
-            direction: direction_after(change * per_s, &kept.direction),
+            direction: direction_after(made.last * per_s, &kept.direction),
             share,
             ratio: made.end,
         },

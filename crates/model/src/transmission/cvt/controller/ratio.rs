@@ -384,6 +384,8 @@ impl<R: Real> RatioControl<R> {
             let second = self.part((from, away[2] - away[1]), (left_s, waits_s), rates);
             mean = whole.select(mean, mean + (change * left_s + second.area) / d.dt_s);
             change = whole.select(change, change + second.change);
+            let goes_on = second.last.abs().gt(MIN_CHANGE);
+            part.last = (!whole & goes_on).select(second.last, part.last);
             part.down = whole.select(part.down, second.down);
             part.up = whole.select(part.up, second.up);
             part.tracks = whole.select(part.tracks, second.tracks);
@@ -391,6 +393,7 @@ impl<R: Real> RatioControl<R> {
         Way {
             mean,
             change: stays.select(zero, change),
+            last: stays.select(zero, part.last),
             tracks: part.tracks,
             held: !stays & ((by_flow[0] & part.up) | (by_flow[1] & part.down)),
         }
@@ -419,15 +422,40 @@ impl<R: Real> RatioControl<R> {
         // A reversal within the step waits for the next one (RC-10).
         let moved = (rate * moves_s).abs().gt(MIN_CHANGE);
         let reverses = zero.gt(follows * rate) & moved & self.hysteresis.gt(0.0);
-        let follows = reverses.select(zero, follows);
         let then_s = left_s - moves_s;
         let is_met = still | meets;
-        Part {
+        let part = Part {
             change: rate * moves_s + follows * then_s,
             area: rate * moves_s * (0.5 * moves_s + then_s) + 0.5 * follows * then_s * then_s,
+            last: rate * moves_s + follows * then_s,
             tracks: is_met & follows.bits_eq(slope),
             down: (is_down & !is_met) | (is_met & slope.gt(down)),
             up: (is_up & !is_met) | (is_met & (-slope).gt(up)),
+        };
+        if !reverses.any() {
+            return part;
+        }
+        // RC-10: the target has turned round. It waits until that is large enough, then goes after it.
+        let waits_s = (self.hysteresis / slope.abs()).min(then_s);
+        let back_s = then_s - waits_s;
+        let back = slope.gt(0.0).select(down, -up);
+        let meets_s = slope * waits_s / (back - slope);
+        let meets = meets_s.gt(0.0) & back_s.gt(meets_s);
+        let moves_back_s = meets.select(meets_s, back_s);
+        let rest_s = back_s - moves_back_s;
+        let (forth, change) = (rate * moves_s, back * moves_back_s + follows * rest_s);
+        let area = forth * (0.5 * moves_s + then_s)
+            + back * moves_back_s * (0.5 * moves_back_s + rest_s)
+            + 0.5 * follows * rest_s * rest_s;
+        let goes_back = back_s.gt(0.0);
+        let late = goes_back & !meets;
+        Part {
+            change: reverses.select(forth + change, part.change),
+            area: reverses.select(area, part.area),
+            last: reverses.select(goes_back.select(change, forth), part.last),
+            tracks: (reverses & meets & follows.bits_eq(slope)) | (!reverses & part.tracks),
+            down: (reverses & late & slope.gt(0.0)) | (!reverses & part.down),
+            up: (reverses & late & zero.gt(slope)) | (!reverses & part.up),
         }
     }
 
@@ -439,6 +467,7 @@ impl<R: Real> RatioControl<R> {
             mean: stays.select(before, within(mean)),
             end: stays.select(before, way.tracks.select(wanted[1], within(end))),
             change: way.change,
+            last: way.last,
             held: way.held,
         }
     }
@@ -450,6 +479,8 @@ struct Part<R: Real> {
     change: R,
     /// Integral of the change since its beginning, s.
     area: R,
+    /// Its change since the ratio turned round.
+    last: R,
     /// True where it ends at the target.
     tracks: R::Mask,
     /// True where the rate towards low is what holds it back, ...
@@ -464,6 +495,8 @@ struct Way<R: Real> {
     mean: R,
     /// Whole change.
     change: R,
+    /// Change since the ratio turned round.
+    last: R,
     /// True where the target is reached at the end.
     tracks: R::Mask,
     /// True where pump flow holds it back.
@@ -477,8 +510,10 @@ pub struct Shifted<R: Real = f64> {
     pub mean: R,
     /// At the end of the step: where the next one begins.
     pub end: R,
-    /// Change of ln I from the beginning to the end.
+    /// Change of ln I from the beginning to the end, ...
     pub change: R,
+    /// ... and that since the ratio turned round within the step.
+    pub last: R,
     /// True where pump flow held it back.
     pub held: R::Mask,
 }
@@ -491,6 +526,7 @@ impl<R: Real> Shifted<R> {
             mean: ratio,
             end: ratio,
             change: ratio.splat(0.0),
+            last: ratio.splat(0.0),
             held: ratio.splat_mask(false),
         }
     }
@@ -531,7 +567,7 @@ const AT_TARGET: f64 = 1e-9;
 /// Rate of ln I that counts as a change, 1/s (RC-10).
 const MIN_RATE_PER_S: f64 = 1e-4;
 
-/// Direction of the last change, after a rate of ln I, 1/s (RC-10).
+/// Direction of the last change, after the rate of ln I since it turned round, 1/s (RC-10).
 #[physics]
 pub fn direction_after<R: Real>(rate_per_s: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
     R::per_lane(|lane| match rate_per_s.lane(lane) {
