@@ -14,7 +14,7 @@ use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, baseline_of, is_twin
 use cvtcycle_config::{Acts, Override, Problem, Problems};
 use cvtcycle_output::progress::{NoProgress, Progress};
 use cvtcycle_output::summary::{DrawnDifference, FAILED_SHARES};
-use cvtcycle_study::execute::outputs::FUEL;
+use cvtcycle_study::execute::outputs::{FUEL, FUEL_OVER_TIME};
 use cvtcycle_study::execute::{Column, Columns, End, PartWriter, Study, relative, with_ranges};
 use cvtcycle_study::plan::{Base, Cars, Design, Factor, Plan};
 use cvtcycle_study::statistics::{Confidence, Share, Summary};
@@ -382,19 +382,26 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
     let (mut list, mut failed) = (Vec::new(), BTreeMap::<String, u64>::new());
     let mut own_fuel = Vec::new();
     for part in 0..study.parts() {
-        let cells = parts.columns(study, part, &["status", "reason", FUEL]);
+        let cells = parts.columns(study, part, &["status", "reason", FUEL, FUEL_OVER_TIME]);
         let [
             Values::Text(status),
             Values::Text(reason),
             Values::Number(fuel),
+            Values::Number(over_time),
         ] = &cells[..]
         else {
             continue;
         };
+        // A drive without way has no fuel over distance.
+        let compared = match fuel.iter().any(|x| x.is_finite()) {
+            true => fuel,
+            false => over_time,
+        };
         let points = status.chunks_exact(cars).zip(reason.chunks_exact(cars));
-        for ((status, reason), fuel) in points.zip(fuel.chunks_exact(cars)) {
+        let fuels = fuel.chunks_exact(cars).zip(compared.chunks_exact(cars));
+        for ((status, reason), (own, fuel)) in points.zip(fuels) {
             if &*status[0] == "ok" {
-                own_fuel.push(fuel[0]);
+                own_fuel.push(own[0]);
             }
             if [0, other].iter().all(|car| &*status[*car] == "ok") {
                 let (own, of) = match is_run {

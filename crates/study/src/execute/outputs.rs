@@ -14,6 +14,9 @@ pub const EXCESS: &str = "subject_excess_percent";
 /// The column of the headline fuel.
 pub const FUEL: &str = "headline_fuel_l_per_100km";
 
+/// The column of the fuel over time, which a drive too short or too slow for the headline fuel has.
+pub const FUEL_OVER_TIME: &str = "fuel_l_per_h";
+
 /// The column of a phase's fuel.
 pub fn phase_fuel(phase: &str) -> String {
     format!("fuel_{}_l_per_100km", column_word(phase))
@@ -51,6 +54,7 @@ fn fuel(phases: &[String]) -> Vec<Column<Run>> {
     let mut list = columns! { Run;
         optional FUEL, "L/100 km", "fuel of the car: weighted where the cycle is, else over the whole cycle", (r, _) => r.headline_fuel();
         optional "fuel_l_per_100km", "L/100 km", "fuel over the whole cycle", (r, _) => r.fuel_l_per_100km;
+        optional FUEL_OVER_TIME, "L/h", "fuel over the whole cycle, by time", (r, _) => r.fuel_l_per_h;
     };
     list.extend(phases.iter().map(|phase| {
         let (doc, word) = (format!("fuel in {phase}"), column_word(phase));

@@ -511,6 +511,12 @@ fn val_hysteresis_by_hand() {
         ..demand(0.15, 70.0, 2.35) // towards 2.57, held at the end
     };
     same(c.step(&low).end, 2.4);
+    // The engine is not let above the speed of its greatest power: 600 rad/s.
+    let fast = RatioDemand {
+        last_direction: 1,
+        ..demand(2.0, 300.0, 2.0 * 1.02)
+    };
+    same(c.step(&fast).end, 2.0);
 }
 
 /// RC-10 within a step (RC-17): a target that turns round while the ratio follows it is followed again from the hysteresis on, not from the next step.

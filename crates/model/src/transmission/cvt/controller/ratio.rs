@@ -15,7 +15,7 @@
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart, n_p the speed of the primary; none while the belt is at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked, which it has within a step once I w_s has come to the engine's speed before it | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-9 | RC-1 and RC-2 look at u, tau du/dt = P/P_max - u, solved over a step in which P is linear; RC-3 at P itself | ASSUMED: tau 0 to 3 s |
-//! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
+//! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, to the speed of greatest power (RC-8), and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
 //! | RC-5 | and <= V_left / (A 2 tan th \|dR/d ln I\|), V_left by PU-7 at the end of the step, with the pressure that this rate needs (PC-5): the largest rate that fulfils it | derived: thesis 9.1; at the end of the step as all else in it; solved to 1e-6 of the demanded flow |
 //!
@@ -295,7 +295,8 @@ impl<R: Real> RatioControl<R> {
             ..d.clone()
         };
         let whole = before.splat(1.0);
-        let way = self.way(&at_once, ([away; 3], whole), before.splat(0.0), stays);
+        let waits = (before.splat(0.0), self.hysteresis);
+        let way = self.way(&at_once, ([away; 3], whole), waits, stays);
         self.shifted(before, [wanted; 2], &way, stays)
     }
 
@@ -314,16 +315,20 @@ impl<R: Real> RatioControl<R> {
     ) -> Shifted<R> {
         let before = d.ratio_before;
         let away = R::ln_array([wanted[0] / before, wanted[1] / before]);
-        let waits_s = self.waits_s(d, wanted[1], away);
+        // RC-10: an engine at the end of its speeds is not let above them.
+        let is_fastest = (wanted[1] * d.secondary_rad_s).ge(AT_FASTEST * self.highest_rad_s);
+        let hysteresis = is_fastest.select(before.splat(0.0), self.hysteresis);
+        let waits_s = self.waits_s(d, (wanted[1], hysteresis), away);
         // At an end of the ratio the target stays.
         let at_end = wanted[0].le(self.high) | wanted[0].ge(self.low);
         let bend = (at_end & bends_at.lt(1.0)).select(away[0], away[1]);
-        let way = self.way(d, ([away[0], bend, away[1]], bends_at), waits_s, stays);
+        let ends = ([away[0], bend, away[1]], bends_at);
+        let way = self.way(d, ends, (waits_s, hysteresis), stays);
         self.shifted(before, wanted, &way, stays)
     }
 
     /// Time for which a reversal waits, s (RC-10): until it is large enough, or there is none any more.
-    fn waits_s(&self, d: &RatioDemand<R>, wanted: R, away: [R; 2]) -> R {
+    fn waits_s(&self, d: &RatioDemand<R>, (wanted, hysteresis): (R, R), away: [R; 2]) -> R {
         let zero = wanted.splat(0.0);
         let direction = zero.map_lanes(|lane| f64::from(*R::get(&d.last_direction, lane)));
         let back = [-direction * away[0], -direction * away[1]];
@@ -331,18 +336,18 @@ impl<R: Real> RatioControl<R> {
         let free = wanted.le(self.high)
             | wanted.ge(self.low)
             | (d.ratio_before * d.secondary_rad_s).le(d.free_up_to_rad_s)
-            | zero.ge(self.hysteresis);
+            | zero.ge(hysteresis);
         // A ratio that follows its target begins at it but for rounding, whose sign decides nothing.
-        let begins = back[0].ge(-AT_TARGET) & self.hysteresis.ge(back[0]);
+        let begins = back[0].ge(-AT_TARGET) & hysteresis.ge(back[0]);
         let held = reverses & !free & begins;
         if !held.any() {
             return zero;
         }
         let whole = zero.splat(d.dt_s);
-        let grows = back[1].gt(self.hysteresis);
+        let grows = back[1].gt(hysteresis);
         let turns = zero.gt(back[1]);
         let apart = back[1] - back[0];
-        let until_large = d.dt_s * (self.hysteresis - back[0]) / apart;
+        let until_large = d.dt_s * (hysteresis - back[0]) / apart;
         let until_none = d.dt_s * back[0] / -apart;
         let waits = grows.select(until_large, turns.select(until_none, whole));
         held.select(waits, zero)
@@ -354,7 +359,7 @@ impl<R: Real> RatioControl<R> {
         &self,
         d: &RatioDemand<R>,
         (away, bends_at): ([R; 3], R),
-        waits_s: R,
+        (waits_s, hysteresis): (R, R),
         stays: R::Mask,
     ) -> Way<R> {
         let zero = waits_s.splat(0.0);
@@ -373,7 +378,7 @@ impl<R: Real> RatioControl<R> {
         let mut part = self.part(
             (away[0], away[1] - away[0]),
             (first_s, waits_s.min(first_s)),
-            rates,
+            (rates, hysteresis),
         );
         let mut mean = part.area / d.dt_s;
         let mut change = part.change;
@@ -381,7 +386,11 @@ impl<R: Real> RatioControl<R> {
             let left_s = d.dt_s - first_s;
             let from = away[1] - part.change;
             let waits_s = (waits_s - first_s).max(0.0);
-            let second = self.part((from, away[2] - away[1]), (left_s, waits_s), rates);
+            let second = self.part(
+                (from, away[2] - away[1]),
+                (left_s, waits_s),
+                (rates, hysteresis),
+            );
             mean = whole.select(mean, mean + (change * left_s + second.area) / d.dt_s);
             change = whole.select(change, change + second.change);
             let goes_on = second.last.abs().gt(MIN_CHANGE);
@@ -405,7 +414,7 @@ impl<R: Real> RatioControl<R> {
         &self,
         (away, shifts): (R, R),
         (time_s, waits_s): (R, R),
-        [up, down]: [R; 2],
+        ([up, down], hysteresis): ([R; 2], R),
     ) -> Part<R> {
         let zero = away.splat(0.0);
         let slope = time_s.gt(0.0).select(shifts / time_s, zero);
@@ -421,7 +430,7 @@ impl<R: Real> RatioControl<R> {
         let follows = slope.clamp(-up, down);
         // A reversal within the step waits for the next one (RC-10).
         let moved = (rate * moves_s).abs().gt(MIN_CHANGE);
-        let reverses = zero.gt(follows * rate) & moved & self.hysteresis.gt(0.0);
+        let reverses = zero.gt(follows * rate) & moved & hysteresis.gt(0.0);
         let then_s = left_s - moves_s;
         let is_met = still | meets;
         let part = Part {
@@ -436,7 +445,7 @@ impl<R: Real> RatioControl<R> {
             return part;
         }
         // RC-10: the target has turned round. It waits until that is large enough, then goes after it.
-        let waits_s = (self.hysteresis / slope.abs()).min(then_s);
+        let waits_s = (hysteresis / slope.abs()).min(then_s);
         let back_s = then_s - waits_s;
         let back = slope.gt(0.0).select(down, -up);
         let meets_s = slope * waits_s / (back - slope);
@@ -563,6 +572,9 @@ const MIN_CHANGE: f64 = 1e-6;
 
 /// Distance in ln I from which a ratio counts as away from its target (RC-10).
 const AT_TARGET: f64 = 1e-9;
+
+/// Engine speed over that of greatest power from which it counts as that, but for rounding (RC-10).
+const AT_FASTEST: f64 = 1.0 - 1e-9;
 
 /// Rate of ln I that counts as a change, 1/s (RC-10).
 const MIN_RATE_PER_S: f64 = 1e-4;
