@@ -484,10 +484,27 @@ fn values_set_by_the_user_are_certain() {
 /// Truth: the draws of a car that misses its trace in some of them. Pairs that cannot be driven are left out and counted.
 #[test]
 fn draws_that_fail_are_left_out_and_counted() {
+    let dir = tempfile::tempdir().unwrap();
+    let weak = [
+        "new",
+        "weak",
+        "--mass",
+        "1300",
+        "--displacement",
+        "1.4l",
+        "--power",
+        "92kW",
+        "--box",
+        "box_cvt_converter",
+    ];
+    assert_eq!(run_in(dir.path(), &weak).status.code(), Some(0));
+    let car = dir.path().join("weak.toml");
     let words = [
         "run",
         "--vehicle",
-        "civic_20_cvt",
+        car.to_str().unwrap(),
+        "--baseline",
+        "rover_216_5mt",
         "--cycle",
         "us06",
         "--start",
