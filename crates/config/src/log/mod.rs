@@ -33,8 +33,6 @@ mod sheet;
 mod slopes;
 mod smooth;
 mod stamp;
-#[cfg(test)]
-mod tests;
 mod text;
 
 pub(crate) use doubts::{Likeness, motions, steep};

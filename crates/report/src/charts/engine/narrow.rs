@@ -3,8 +3,8 @@
 
 use super::axis::{Axis, range};
 use super::chart::{Block, Chart, Content, Entry};
-use super::panel::{BELOW, Item, Panel, Shape, row_middle};
-use super::place::{Label, Place, at};
+use super::panel::{BELOW, Item, PAD, Panel, Shape, row_middle};
+use super::place::{End, Label, Place, at};
 use super::style::stroke;
 use super::svg::Rect;
 use super::text::{Cut, lines, text_width};
@@ -184,7 +184,7 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
     });
     // Lines of several panels may have one name.
     let of = panel.heading.split(':').next().unwrap_or_default();
-    let entry = |end: &super::ends::End| {
+    let entry = |end: &End| {
         let name = match of {
             "" => end.text.clone(),
             of => format!("{of}: {}", end.text),
@@ -250,9 +250,6 @@ fn rows(panel: &Panel, all: &[Panel], (pitch, top): (f64, f64)) -> Panel {
     }
     own
 }
-
-/// Room of a panel of rows above the first and below the last one, pixels.
-pub(super) const PAD: f64 = 3.0;
 
 /// Adds a label to the text of its row.
 fn join(name: &mut Option<Label>, label: &Label) {
