@@ -90,7 +90,7 @@ fn explain_knows_keys_columns_flags_and_equations() {
     }
     assert_eq!(stdout(&run(&["explain", "band_offset_mm"])), whole);
     let oil = json(&["explain", "engine_oil.kv40_mm2_s", "--json"]);
-    assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 7);
+    assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 10);
     // Option not chosen by any embedded vehicle.
     assert!(
         stdout(&run(&["explain", "dual_cavity"])).contains("share")
