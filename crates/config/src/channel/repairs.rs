@@ -48,6 +48,13 @@ repairs! {
 }
 
 impl Repairs {
+    /// With the repair of this name, too; the same for a name that is none.
+    #[must_use]
+    pub(crate) fn with(mut self, word: &str) -> Repairs {
+        self.set(word, true);
+        self
+    }
+
     /// Reads a list: `cut`, `no-smooth`, `none`, with commas between them.
     ///
     /// # Errors

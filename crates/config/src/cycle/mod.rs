@@ -17,6 +17,8 @@ mod look;
 mod plain;
 mod read;
 mod row;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use cvtcycle_model::cycle::*;

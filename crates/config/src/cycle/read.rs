@@ -7,7 +7,7 @@ use super::gears::{GearColumns, GearCommand, commands};
 use super::likeness::likeness;
 use super::row::{GEARS, MAX_DURATION_S, NOTE, Over, Row, Rows, schema};
 use super::{Cycle, Interval, Measured, Recording, Trace, Weighting, is_standstill};
-use crate::channel::Quantity;
+use crate::channel::{Quantity, Repairs};
 use crate::csv::{self, Collector, Columns, Entry, Line, Table};
 use crate::log::{self, Channel, Log, Resolution, Samples};
 use crate::{Place, Problem, Problems, readable};
@@ -102,10 +102,13 @@ fn read_any(
         Ok(log) => return Ok(of_log(log, phases)),
         Err(refused) => refused,
     };
-    // The reader of tables says more of a table of a cycle, unless there is something to choose.
+    // The reader of tables says more of a table of a cycle, unless there is something to choose, and that is all that it lacks.
     let is_choice = |problem: &Problem| problem.proposal.is_some() || !problem.settings.is_empty();
     let is_better = match has_names {
-        true => refused.problems.iter().any(is_choice),
+        true => {
+            refused.problems.iter().any(is_choice)
+                && mends((file, bytes), columns, &refused.problems)
+        }
         false => refused.is_known,
     };
     match problems {
@@ -115,6 +118,28 @@ fn read_any(
             Err(alike(problems).map(|problem| problem.columns(columns.as_str())))
         }
         _ => Err(refused.problems),
+    }
+}
+
+/// True if the log is read with the repairs that its problems propose, or with those that are proposed then; also where none is proposed.
+fn mends((file, bytes): (&str, &[u8]), columns: &Columns, problems: &Problems) -> bool {
+    let next = |wanted: Repairs, problems: &Problems| -> Option<Repairs> {
+        let proposed = problems.iter().filter_map(|own| own.proposal.as_deref());
+        let more = proposed.fold(wanted, |all, own| all.with(&own.repair));
+        (more != wanted).then_some(more)
+    };
+    let Some(mut wanted) = next(columns.repairs(), problems) else {
+        return true;
+    };
+    loop {
+        let columns = columns.clone().with_repairs(wanted);
+        let Err(refused) = log::read(file, bytes, &columns, likeness) else {
+            return true;
+        };
+        match next(wanted, &refused.problems) {
+            Some(more) => wanted = more,
+            None => return false,
+        }
     }
 }
 

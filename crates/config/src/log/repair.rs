@@ -325,7 +325,7 @@ impl Treatment<'_> {
         let seconds: f64 = rests.iter().map(|k| samples.step(*k)).sum();
         if let Some(first) = rests.first().filter(|_| !self.wanted.cut) {
             self.doubts.push(format!(
-                "{} at rest without rows, {} s in all, the first at {} s, with the engine at idle: are these drives of their own? --repair cut takes the time out",
+                "{} at rest without rows, {} s in all, the first at {} s, with the engine at idle: are these drives of their own? the repair `cut` takes the time out",
                 number_of(rests.len(), "gap"),
                 readable(seconds, 0),
                 readable(samples.time_s[*first] - samples.time_s[0], 0)

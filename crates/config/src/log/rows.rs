@@ -51,8 +51,18 @@ impl Reader<'_, '_> {
             return Err(Refused::known(problem));
         }
         let pick = |values: &Vec<f64>| rows.iter().map(|k| values[*k]).collect::<Vec<f64>>();
+        let mut time_s = pick(times);
+        if self.sheet.is_trace() {
+            // Means are the values of the middles of their steps, of which those at a gear change are short. The first step begins at 0.
+            let mut begin_s = 0.0;
+            for time in &mut time_s {
+                let end_s = *time;
+                *time = 0.5 * (begin_s + end_s);
+                begin_s = end_s;
+            }
+        }
         let samples = Samples {
-            time_s: pick(times),
+            time_s,
             speed_m_s: pick(speeds),
             lines: rows.iter().map(|k| filled.lines[*k]).collect(),
             first_m_s: Vec::new(),

@@ -141,6 +141,9 @@ pub(super) struct Sheet<'t> {
     pub tail: Vec<Vec<&'t str>>,
 }
 
+/// First columns of a trace of this program.
+const TRACE: [&str; 5] = ["time_s", "dt_s", "phase", "speed_kmh", "accel_m_s2"];
+
 /// A line as the reader meets it.
 pub(super) enum Met<'f> {
     Row(&'f [Field]),
@@ -252,6 +255,15 @@ impl<'t> Sheet<'t> {
             sample,
             tail,
         })
+    }
+
+    /// True of a trace of this program, whose rows are means over the steps that end at their times.
+    pub(super) fn is_trace(&self) -> bool {
+        self.names
+            .iter()
+            .map(String::as_str)
+            .take(TRACE.len())
+            .eq(TRACE)
     }
 
     /// Calls `take` with the number of each line below the names, counted from 1, its text and its fields. Blank lines and comments are passed over.

@@ -61,6 +61,8 @@ pub struct DrivelineState<R: Real = f64> {
     pub coupled: R::Mask,
     /// Speed by which the engine is faster over a lock-up clutch that closes, at the end of the step, rad/s (TC-9).
     pub closing_rad_s: R,
+    /// Manual box: time in which it has been in a gear below that of the shift speeds, s; else 0 (MB-5).
+    pub lowered_s: R,
     /// True where the car stood still.
     pub stood: bool,
     /// Time that it has, s, with the engine running; kept by a CVT.

@@ -1,7 +1,8 @@
 //! A picture with the table of its numbers, which also fills its tooltips.
 
-use super::engine::Chart;
 use crate::number::with_unit;
+use std::fmt;
+use std::sync::Arc;
 
 /// A picture and its numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,9 +16,31 @@ pub struct Picture {
     pub table: PictureTable,
 }
 
-/// The chart of a picture and its description in words, to be drawn for a narrow screen.
-#[derive(Clone, Debug, Default)]
-pub struct Narrow(pub(super) Option<(Box<Chart>, String)>);
+/// Draws a picture for a narrow screen; none where that cannot be.
+type Draw = dyn Fn() -> Option<String> + Send + Sync;
+
+/// The drawing of a picture for a narrow screen, by what drew the picture: pictures know no chart.
+#[derive(Clone, Default)]
+pub struct Narrow(Option<Arc<Draw>>);
+
+impl Narrow {
+    /// A drawing that is made by this.
+    pub(super) fn by(draw: impl Fn() -> Option<String> + Send + Sync + 'static) -> Self {
+        Narrow(Some(Arc::new(draw)))
+    }
+
+    /// The picture for a narrow screen; `None` for one that is drawn in pixels.
+    #[must_use]
+    pub fn svg(&self) -> Option<String> {
+        self.0.as_ref().and_then(|draw| draw())
+    }
+}
+
+impl fmt::Debug for Narrow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Narrow").field(&self.0.is_some()).finish()
+    }
+}
 
 /// Pictures of the same drawing are the same.
 impl PartialEq for Narrow {

@@ -624,3 +624,47 @@ fn val_commands_of_gears() {
     );
     same(state.driveline.engine_rad_s, idle);
 }
+
+/// A gear that was taken for its torque stays for a second while power is asked for (MB-5), whatever the step; a driver who lifts changes at once.
+#[test]
+fn a_lower_gear_is_kept_for_a_second() {
+    let car = car("rover_216_5mt", &[]).car(293.15);
+    let k = 80.0 + ZERO;
+    let engine = car.engine.at(k, k, &car.engine_oil, 1.0);
+    let heat = Heat { node_k: [k; NODES] };
+    // Gears after 3 steps with more than top gear gives and others with less.
+    let gears = |dt_s: f64, later_nm: f64| -> Vec<u8> {
+        let mut state: Option<TransmissionState> = None;
+        let step = |k: usize| {
+            let wheel_nm = if k < 3 { 600.0 } else { later_nm };
+            let wheel = WheelDemand {
+                speed_m_s: 110.0 * 0.2832,
+                wheel_rad_s: 110.0,
+                power_w: wheel_nm * 110.0,
+                ..WheelDemand::default()
+            };
+            let around = StepInput {
+                wheel: &wheel,
+                engine: &engine,
+                oil: &car.oil,
+                heat: &heat,
+                gear: None,
+                dt_s,
+                engine_off: false,
+                neutral_share: 0.0,
+                kinetic_j: engine.rotating_j(366.0),
+            };
+            let state = state.get_or_insert_with(|| car.transmission.start(&around));
+            car.transmission.solve(&around, state).gear
+        };
+        (0..14).map(step).collect()
+    };
+    let own = gears(0.1, 200.0);
+    assert!(own[0] < 5, "{own:?}");
+    assert!(own[..10].iter().all(|gear| *gear == own[0]), "{own:?}");
+    assert!(own[10..].iter().all(|gear| *gear == 5), "{own:?}");
+    let lifted = gears(0.1, -100.0);
+    assert!(lifted[3..].iter().all(|gear| *gear == 5), "{lifted:?}");
+    let seconds = gears(1.0, 200.0);
+    assert!(seconds[3..].iter().all(|gear| *gear == 5), "{seconds:?}");
+}

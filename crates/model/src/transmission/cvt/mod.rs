@@ -378,6 +378,7 @@ impl<R: Real> Cvt<R> {
             secondary_pa: self.floors.control_pa,
             coupled: primary.gt(idle),
             closing_rad_s: zero,
+            lowered_s: zero,
             stood: zero.ge(secondary).all(),
             rested_s: 0.0,
         };

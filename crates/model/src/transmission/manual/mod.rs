@@ -6,7 +6,7 @@
 //! | MB-2 | seals: LS-1 | source: ISO/TR 14179-2; sizes ASSUMED |
 //! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes ASSUMED, factors fitted to the published losses and thesis 5.5.1 |
 //! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published losses |
-//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque and the engine may turn as fast at both ends of the step, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; rest derived |
+//! | MB-5 | gears: the cycle's, on a WLTC GS-1 to GS-6, else shift speeds with hysteresis; a lower gear where the one in force lacks torque and the engine may turn as fast at both ends of the step, kept for 1 s while power is asked for, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83, UN GTR 15; 1 s ASSUMED: no driver changes twice in a second; rest derived |
 //! | MB-6 | GT-1 and GT-2 with f_bearing (M_0 + M_pre) and the bearings' part of k, f_churning C, f_seal T_seal, f_mesh the teeth's part of k; a map f times | derived: definition of losses changed by the factors f of `loss_factor`, for their price |
 //!
 //! At 80 degC the mean of gears 3 to 5 without load follows the published 0.925 Nm + 0.000407 Nm/rpm within 25 % from 1000 to 4000 rpm, and
@@ -33,7 +33,7 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
 use crate::lubricant::VALID_K;
 use crate::maps::LossMap;
-use crate::math::{Gather, Mask, Real, gather_each, physics};
+use crate::math::{Gather, Mask, Real, gather_each, larger, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::SUMP;
@@ -111,6 +111,8 @@ impl<R: Real> Driveline<R> for Manual<R> {
 
 /// Speed of the input shaft over idle speed below which the driver of a car that slows down opens the clutch (MB-5).
 const MIN_OVER_IDLE: f64 = 1.05;
+/// Time for which a driver keeps a gear below that of the shift speeds, s (MB-5): rounding is no reason to change before.
+const KEPT_S: f64 = 1.0 - 1e-9;
 
 impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
@@ -164,12 +166,16 @@ impl<R: Real> Manual<R> {
     fn shifted<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
-        before: u8,
+        state: &DrivelineState<R>,
         run: usize,
     ) -> GearCommand {
         let wheel = step.wheel;
         let shifts = R::get(&self.shifts, run);
-        let gear = shifts.for_speed(wheel.speed_m_s, before, self.overall.len());
+        let before = *R::get(&state.gear, run);
+        let mut gear = shifts.for_speed(wheel.speed_m_s, before, self.overall.len());
+        if self.keeps_lower(step, state, run) {
+            gear = gear.min(before);
+        }
         let overall = self.overall[usize::from(gear) - 1].lane(run);
         let idle_rad_s = step.engine.idle_rad_s().lane(run);
         if wheel.power_w.lane(run) <= 0.0
@@ -178,6 +184,46 @@ impl<R: Real> Manual<R> {
             GearCommand::Declutched(gear)
         } else {
             GearCommand::InGear(gear)
+        }
+    }
+}
+
+impl<R: Real> Manual<R> {
+    /// True where a run keeps the lower gear that it took for its torque (MB-5).
+    fn keeps_lower<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        state: &DrivelineState<R>,
+        run: usize,
+    ) -> bool {
+        let lowered_s = state.lowered_s.lane(run);
+        let place = usize::from(*R::get(&state.gear, run)).checked_sub(1);
+        let Some(place) = place.filter(|_| 0.0 < lowered_s && lowered_s < KEPT_S) else {
+            return false;
+        };
+        let wheel = step.wheel;
+        let [first, last] = wheel.ends_over_mean(step.dt_s);
+        let fastest_rad_s = larger(first, last) * self.overall[place] * wheel.wheel_rad_s;
+        wheel.power_w.lane(run) > 0.0 && fastest_rad_s.lane(run) < step.engine.max_rad_s().lane(run)
+    }
+
+    /// Time in which a run has had the gear in force after the step, where that is below the one of the shift speeds, s; else 0 (MB-5).
+    fn lowered_s<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        state: &DrivelineState<R>,
+        (gear, run): (u8, usize),
+    ) -> f64 {
+        if step.gear.is_some() || gear == 0 {
+            return 0.0;
+        }
+        let before = *R::get(&state.gear, run);
+        let shifts = R::get(&self.shifts, run);
+        let by_speed = shifts.for_speed(step.wheel.speed_m_s, before, self.overall.len());
+        match gear < by_speed {
+            true if gear == before => (state.lowered_s + step.dt_s).lane(run),
+            true => step.dt_s,
+            false => 0.0,
         }
     }
 }
@@ -211,6 +257,7 @@ impl<R: Real> Manual<R> {
             secondary_pa: zero,
             coupled: input.gt(idle),
             closing_rad_s: zero,
+            lowered_s: zero,
             stood: true,
             rested_s: 0.0,
         }
@@ -255,18 +302,19 @@ impl<R: Real> Manual<R> {
     fn action<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
-        before: u8,
+        state: &DrivelineState<R>,
         rolls: bool,
         run: usize,
     ) -> Action {
         let count = self.overall.len() as u8;
+        let before = *R::get(&state.gear, run);
         let command = match step.gear {
             Some(GearCommand::Change(gear)) => GearCommand::InGear(gear),
             Some(GearCommand::InGear(gear)) => GearCommand::InGear(gear.min(count)),
             Some(GearCommand::Declutched(gear)) => GearCommand::Declutched(gear.min(count)),
             Some(GearCommand::Neutral) => GearCommand::Neutral,
             None if !rolls => GearCommand::Neutral,
-            None => self.shifted(step, before, run),
+            None => self.shifted(step, state, run),
         };
         match command {
             GearCommand::InGear(gear) | GearCommand::Change(gear) if rolls && gear > 0 => {
@@ -317,7 +365,7 @@ impl<R: Real> Manual<R> {
         };
         // The road speed is that of all runs.
         let rolls = step.wheel.wheel_rad_s.gt(0.0).any();
-        let actions = R::per_lane(|run| self.action(step, *R::get(&state.gear, run), rolls, run));
+        let actions = R::per_lane(|run| self.action(step, at.state, rolls, run));
         at.act(&actions, output);
         output.flag(
             Flags::OVERSPEED,
@@ -337,6 +385,11 @@ impl<R: Real> Manual<R> {
         state: &mut DrivelineState<R>,
         output: &StepOutput<R>,
     ) {
+        if step.gear.is_none() {
+            let gear = |run: usize| *R::get(&output.gear, run);
+            let like = state.engine_rad_s;
+            state.lowered_s = like.map_lanes(|run| self.lowered_s(step, state, (gear(run), run)));
+        }
         for run in 0..R::LANES {
             let gear = *R::get(&output.gear, run);
             let kept = R::get_mut(&mut state.gear, run);

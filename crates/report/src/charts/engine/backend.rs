@@ -13,10 +13,13 @@ use super::axis::Axis;
 use super::chart::LEFT;
 use super::panel::{BELOW, Panel};
 use super::svg::{Svg, UNITS, units};
+use super::text::text_width;
 
 /// Text sizes, pixels.
 const TICK_TEXT: f64 = 11.0;
 const TITLE_TEXT: f64 = 12.0;
+/// Room of a turned title, and the gap between labels and plot, pixels.
+const TITLE_AND_GAP: f64 = 22.0;
 /// Ratio of plotters' font sizes to those of SVG.
 const FONT: f64 = 1.24;
 /// Width of a letter, and depth of a line below its base, in heights of a letter.
@@ -136,6 +139,13 @@ pub(super) fn frame(svg: &mut Svg, panel: &Panel) {
     let _ = try_frame(svg, panel);
 }
 
+/// Room for the labels of the vertical axis, its turned title and the gap to the plot, pixels.
+pub(super) fn beside(panel: &Panel) -> f64 {
+    let labels = panel.y.ticks.iter();
+    let widest = labels.map(|(_, text)| text_width(text, TICK_TEXT));
+    widest.fold(0.0, f64::max) + TITLE_AND_GAP
+}
+
 fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Error>> {
     let below = if panel.x_labels {
         units(BELOW) as i32
@@ -143,7 +153,7 @@ fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Err
         0
     };
     let rect = panel.rect;
-    let left = LEFT.min(rect.left);
+    let left = LEFT.max(beside(panel)).min(rect.left);
     let corner = (units(rect.left - left) as i32, units(rect.top) as i32);
     let size = (
         units(rect.right) as i32 - corner.0,

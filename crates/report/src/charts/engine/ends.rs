@@ -1,8 +1,7 @@
 //! Names of lines at their right ends, moved apart to avoid overlaps.
 
 use super::panel::Panel;
-use super::place::{Label, at};
-use super::svg::Point;
+use super::place::{End, Label, at};
 use super::text::{Cut, text_width};
 
 /// Minimum distance of two names, pixels.
@@ -13,14 +12,6 @@ pub(crate) const ON_CELLS: f64 = 180.0;
 const TEXT: f64 = 11.0;
 /// Distance from the frame within which names are written beyond it, pixels.
 const NEAR: f64 = 30.0;
-
-/// Right end of a line, and its label.
-#[derive(Clone, Debug)]
-pub(crate) struct End {
-    pub at: Point,
-    pub text: String,
-    pub colour: &'static str,
-}
 
 /// Writes the names of lines of a panel to the right of their ends, the highest end on top, in the colours of the lines.
 pub(super) fn labels(panel: &Panel) -> Vec<Label> {

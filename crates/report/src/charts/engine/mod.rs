@@ -19,9 +19,9 @@ mod text;
 pub use axis::cell;
 pub(crate) use axis::{Axis, number, optional_cell, range, round_step};
 pub(crate) use chart::{Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
-pub(crate) use ends::{End, ON_CELLS};
+pub(crate) use ends::ON_CELLS;
 pub(crate) use panel::{BELOW, Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
-pub(crate) use place::{Label, Place, at};
+pub(crate) use place::{End, Label, Place, at};
 pub use style::Palette;
 pub(crate) use style::{
     CONTEXT, DIVERGING, Fill, INK, PLAIN, PUBLISHED, QUIET, RULE, STROKES, Stroke, Style, ZERO,

@@ -2,9 +2,10 @@
 //! in the legend where there is no room at their ends, texts wrapped. Shapes stay where the axes put them.
 
 use super::axis::{Axis, range};
+use super::backend::beside;
 use super::chart::{Block, Chart, Content, Entry};
-use super::panel::{BELOW, Item, Panel, Shape, row_middle};
-use super::place::{Label, Place, at};
+use super::panel::{BELOW, Item, PAD, Panel, Shape, row_middle};
+use super::place::{End, Label, Place, at};
 use super::style::stroke;
 use super::svg::Rect;
 use super::text::{Cut, lines, text_width};
@@ -151,8 +152,10 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
         beyond.max(names)
     };
     let tall = panel.rect.height().min(TALL);
-    own.rect = Rect::new(LEFT, top, WIDTH - LEFT - beyond, tall);
-    own.x = thinned(&panel.x, own.rect.width(), (LEFT, beyond));
+    // Labels as long as 2.0e289 keep off the title of their axis.
+    let left = LEFT.max(beside(panel));
+    own.rect = Rect::new(left, top, WIDTH - left - beyond, tall);
+    own.x = thinned(&panel.x, own.rect.width(), (left, beyond));
     let scale = own.rect.width() / panel.rect.width();
     let scale_y = tall / panel.rect.height();
     let mut placed = Vec::new();
@@ -184,7 +187,7 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
     });
     // Lines of several panels may have one name.
     let of = panel.heading.split(':').next().unwrap_or_default();
-    let entry = |end: &super::ends::End| {
+    let entry = |end: &End| {
         let name = match of {
             "" => end.text.clone(),
             of => format!("{of}: {}", end.text),
@@ -250,9 +253,6 @@ fn rows(panel: &Panel, all: &[Panel], (pitch, top): (f64, f64)) -> Panel {
     }
     own
 }
-
-/// Room of a panel of rows above the first and below the last one, pixels.
-pub(super) const PAD: f64 = 3.0;
 
 /// Adds a label to the text of its row.
 fn join(name: &mut Option<Label>, label: &Label) {

@@ -1,9 +1,7 @@
 //! Panels: a pair of axes and the shapes between them; panels of rows with names at the left.
 
 use super::axis::Axis;
-use super::ends::End;
-use super::narrow::PAD;
-use super::place::{Label, Place, at};
+use super::place::{End, Label, Place, at};
 use super::style::{INK, Stroke, Style, stroke};
 use super::svg::{Point, Rect};
 use super::symbol::Symbol;
@@ -11,6 +9,8 @@ use super::text::{Cut, text_width};
 
 /// Room below a plot for its axis, pixels.
 pub(crate) const BELOW: f64 = 40.0;
+/// Room of a panel of rows above the first and below the last one, pixels.
+pub(super) const PAD: f64 = 3.0;
 
 /// A pair of axes and the shapes between them.
 #[derive(Clone, Debug, Default)]

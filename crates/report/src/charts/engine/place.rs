@@ -1,6 +1,7 @@
 //! Places in a panel, and texts at them.
 
 use super::style::{INK, QUIET};
+use super::svg::Point;
 use super::text::Cut;
 
 /// A place in the units of the axes with an offset in pixels.
@@ -23,6 +24,14 @@ impl Place {
     pub fn shift(self, dx: f64, dy: f64) -> Self {
         Place { dx, dy, ..self }
     }
+}
+
+/// Right end of a line in the units of the axes, and its label.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    pub at: Point,
+    pub text: String,
+    pub colour: &'static str,
 }
 
 /// A line of text at its base line.

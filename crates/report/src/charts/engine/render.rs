@@ -25,7 +25,7 @@ impl Chart {
         self.make_room_for_head();
         let words = self.alt_text(&table);
         let svg = self.drawn(&words);
-        let narrow = Narrow(Some((Box::new(self), words)));
+        let narrow = Narrow::by(move || Some(self.narrowed()?.drawn(&words)));
         Picture { svg, narrow, table }
     }
 
@@ -353,12 +353,4 @@ fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
 fn pixel(panel: &Panel, place: Place) -> Option<Point> {
     let (x, y) = (panel.px(place.x) + place.dx, panel.py(place.y) + place.dy);
     (x.is_finite() && y.is_finite()).then_some((x, y))
-}
-
-impl Narrow {
-    /// The picture for a narrow screen; `None` for one that is drawn in pixels.
-    pub fn svg(&self) -> Option<String> {
-        let (chart, words) = self.0.as_ref()?;
-        Some(chart.narrowed()?.drawn(words))
-    }
 }

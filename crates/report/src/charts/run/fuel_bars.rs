@@ -17,6 +17,8 @@ const WIDTHS: (f64, f64) = (660.0, 786.0);
 const LABEL: f64 = 11.0;
 /// Width below which bars have their values in the table only, pixels.
 const TURNED: f64 = 15.0;
+/// Height of a row of the picture for a narrow screen besides its name, pixels: forty cars of a cycle with two parts are less than 4000 px.
+const PITCH: f64 = 17.0;
 /// Empty share of a group's width.
 const GAP: f64 = 0.28;
 
@@ -39,12 +41,18 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
         [run] => run.name.to_owned(),
         _ => format!("{} vehicles", runs.len()),
     };
-    Chart::new(title(runs), &subject, PLOT_LEFT)
+    let chart = Chart::new(title(runs), &subject, PLOT_LEFT)
         .width(PLOT_LEFT + plot + 20.0)
-        .narrow(Chart::new(title(runs), subject, PLOT_LEFT).panels(rows(runs, &groups)))
         .panels([panel])
-        .foot(Block::legend((PLOT_LEFT, plot), "Vehicle", entries))
-        .picture(table)
+        .foot(Block::legend((PLOT_LEFT, plot), "Vehicle", entries));
+    // Without any group there is no row: the plot says that it has no data.
+    let chart = match groups.is_empty() {
+        true => chart,
+        false => {
+            chart.narrow(Chart::new(title(runs), subject, PLOT_LEFT).panels(rows(runs, &groups)))
+        }
+    };
+    chart.picture(table)
 }
 
 /// Adds the bars of all groups; returns their values.
@@ -75,7 +83,7 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
 /// A panel of horizontal bars for each group, which fit on a narrow screen; marks have the rows of the table of [`draw_groups`].
 fn rows(runs: &[PlotRun], groups: &[String]) -> Vec<Panel> {
     let panel = |(g, group): (usize, &String)| {
-        let mut panel = rows_panel((PLOT_LEFT, TOP), WIDTHS.0, runs.len(), 18.0, axis(runs))
+        let mut panel = rows_panel((PLOT_LEFT, TOP), WIDTHS.0, runs.len(), PITCH, axis(runs))
             .heading(phase(group))
             .x_labels(g + 1 == groups.len());
         for (i, run) in runs.iter().enumerate() {

@@ -431,3 +431,56 @@ fn doubts_come_with_the_drive() {
         );
     }
 }
+
+/// Truth: the mean of a speed that is linear within a step is that of its middle. A step at a change of gear is short.
+#[test]
+fn the_rows_of_a_trace_are_means_over_steps() {
+    let speeds = drive();
+    let at = |time: f64| {
+        let second = time.floor() as usize;
+        let next = speeds[(second + 1).min(speeds.len() - 1)];
+        speeds[second] + (time - time.floor()) * (next - speeds[second])
+    };
+    let mut text = "time_s,dt_s,phase,speed_kmh,accel_m_s2,engine_speed_rpm\n".to_owned();
+    for second in 0..speeds.len() - 1 {
+        let ends = match second % 60 {
+            30 => vec![0.04, 1.0],
+            _ => vec![1.0],
+        };
+        let mut begin = 0.0;
+        for end in ends {
+            let middle = second as f64 + 0.5 * (begin + end);
+            let _ = writeln!(
+                text,
+                "{},{},all,{},0,{}",
+                second as f64 + end,
+                end - begin,
+                at(middle),
+                30.0 * at(middle)
+            );
+            begin = end;
+        }
+    }
+    let cycle = read_with(text.as_bytes(), "").unwrap();
+    assert!(
+        cycle
+            .read_as
+            .as_deref()
+            .unwrap()
+            .contains("means over steps")
+    );
+    // The first row is the middle of the first second.
+    for own in cycle.manual.intervals.iter() {
+        assert!((3.6 * own.start_speed_m_s - at(own.start_s + 0.5)).abs() < 1e-6);
+    }
+    let recording = cycle.recording.as_deref().unwrap();
+    assert!(
+        recording.doubts.is_empty() && recording.repairs.is_empty(),
+        "{recording:?}"
+    );
+    let engine = &recording.measured[0];
+    for (time, rad_s) in engine.time_s.iter().zip(&engine.values) {
+        let rpm = rad_s * 30.0 / std::f64::consts::PI;
+        assert!((rpm - 30.0 * at(time + 0.5)).abs() < 1e-6);
+    }
+}
