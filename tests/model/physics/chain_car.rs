@@ -2,6 +2,7 @@
 
 use crate::common::{ZERO, at, car, cycle, fuel_kg, try_car};
 use cvtcycle_model::drive::{Start, check_physics, drive};
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
@@ -11,7 +12,7 @@ const CHAIN: [&str; 6] = [
     "transmission.cvt.belt.kind.chain.joint_lever_mm=0.02",
     "transmission.cvt.belt.kind.chain.pin_lever_mm=0.4",
     "transmission.cvt.belt.kind.chain.slip_percent=2",
-    "transmission.cvt.belt.kind.chain.stiffness_kn=5000",
+    "transmission.cvt.belt.kind.chain.stiffness_n=5e6",
     "transmission.cvt.belt.mass_kg=1.68",
 ];
 
@@ -39,6 +40,37 @@ fn a_car_with_a_chain_obeys_the_laws() {
                 assert!(finding.holds(), "{clamp} {name} {ambient}: {finding:?}");
             }
         }
+    }
+}
+
+/// A chain at its torque: 1 to 6 % between the pulleys, by the sum of the table's terms (a unit that is lost would show here).
+#[test]
+fn a_chain_loses_a_few_percent() {
+    let setup = car(
+        "rover_216_cvt",
+        &with(&["transmission.cvt.clamp=torque_following"]),
+    );
+    let bench = Bench::new(&setup);
+    for ratio in [2.0, 1.0, 0.5] {
+        let point = BenchPoint {
+            ratio,
+            input_rad_s: 200.0,
+            output_nm: 40.0 * ratio * 4.0,
+            belt_k: Some(80.0 + ZERO),
+            ..BenchPoint::default()
+        };
+        let belt = bench.solve(&point).belt.unwrap();
+        let lost = belt.losses.sum_nm() / belt.input_torque_nm;
+        assert!(
+            (0.01..0.06).contains(&lost),
+            "{ratio}: {lost} {:?}",
+            belt.losses
+        );
+        assert!(
+            (0.002..0.025).contains(&belt.losses.slip_total),
+            "{ratio}: {:?}",
+            belt.losses
+        );
     }
 }
 
@@ -97,7 +129,7 @@ fn no_number_of_a_chain_is_dead() {
         "transmission.cvt.belt.kind.chain.joint_lever_mm=0.05",
         "transmission.cvt.belt.kind.chain.pin_lever_mm=0.8",
         "transmission.cvt.belt.kind.chain.slip_percent=3",
-        "transmission.cvt.belt.kind.chain.stiffness_kn=2500",
+        "transmission.cvt.belt.kind.chain.stiffness_n=2.5e6",
     ] {
         let moved = fuel(&[set]);
         assert!((moved / own - 1.0).abs() > 1e-6, "{set}: {own} {moved}");
@@ -137,7 +169,18 @@ fn no_number_of_a_chain_is_dead() {
     let Transmission::Cvt(cvt) = setup.transmission() else {
         panic!("a CVT")
     };
-    assert!(cvt.belt.chain.is_some());
+    // Units: the keys in mm, % and N, the model in SI.
+    let chain = cvt.belt.chain.unwrap();
+    let own = [
+        chain.joint_m,
+        chain.pin_m,
+        chain.slip,
+        chain.stiffness_n,
+        cvt.belt.segment_thickness_m,
+    ];
+    for (own, wanted) in own.into_iter().zip([2e-5, 4e-4, 0.02, 5e6, 9e-3]) {
+        assert!((own / wanted - 1.0).abs() < 1e-12, "{own} {wanted}");
+    }
 }
 
 /// Keys of bands that are given with a chain, an unknown kind, a lever out of range, a chain that lacks a number: one problem each.

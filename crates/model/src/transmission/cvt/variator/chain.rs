@@ -39,7 +39,7 @@ keys! {
         joint_lever_mm: number(0.0, 1.0), "lever of the friction in a rocker joint: 0 rolls without loss", ["KC-3"];
         pin_lever_mm: number(0.0, 3.0), "lever of the friction of a pin's face on a sheave", ["KC-4"];
         slip_percent: number(0.1, 10.0), "slip at which the whole wrap slides", ["KC-5"];
-        stiffness_kn: number(100.0, 100_000.0), "force over strain of the chain", ["KC-5"];
+        stiffness_n: number(1e5, 1e8), "force over strain of the chain", ["KC-5"];
     }
 }
 
@@ -53,7 +53,7 @@ impl Chain {
             joint_m: s.number(&CHAIN.joint_lever_mm),
             pin_m: s.number(&CHAIN.pin_lever_mm),
             slip: s.number(&CHAIN.slip_percent),
-            stiffness_n: s.number(&CHAIN.stiffness_kn),
+            stiffness_n: s.number(&CHAIN.stiffness_n),
         };
         (chain, s.number(&CHAIN.pitch_mm))
     }
