@@ -552,3 +552,85 @@ fn the_example_of_the_page_is_a_lever_file() {
     let text = example.split("```").next().unwrap();
     assert_eq!(levers(text)[0].name, "short_belt");
 }
+
+/// A plan of two values of the band friction in two forms, drawn with the weights.
+fn two_forms(weights: [f64; 2]) -> Plan {
+    let form = |(name, weight, band): (&str, f64, [f64; 2])| {
+        let [low, high] = band;
+        format!(
+            "[[form]]\nname = \"{name}\"\nweight = {weight}\n[[factor]]\nkey = \"lubricant.friction.band\"\nform = \"{name}\"\n\
+             status = \"assumed\"\ndistribution.uniform = {{ low = {low}, high = {high} }}\n"
+        )
+    };
+    let forms = [
+        ("bands", weights[0], [0.13, 0.130_000_1]),
+        ("drag", weights[1], [0.052, 0.052_000_1]),
+    ];
+    let head = "[study.design.latin_hypercube]\nsamples = 2\nseed = 1\n".to_owned();
+    let text = head + &forms.map(form).concat();
+    Plan::read("forms.toml", &text).unwrap()
+}
+
+/// Truth: the medians of the lever by form are those of drives with that form's band friction set by an override, within the narrow range that the
+/// form gives it; the number of draws is that of the weights.
+#[test]
+fn a_median_by_form_is_that_of_its_values() {
+    let text = lever("offset", &["transmission.cvt.belt.band_offset_mm=1"]);
+    let mut asked = request(&text, 8);
+    if let Some((plan, ..)) = &mut asked.draws {
+        *plan = two_forms([3.0, 1.0]);
+    }
+    let row = run(&asked, 2).row("offset").clone();
+    let counts: Vec<usize> = row.by_form.iter().map(|of| of.n).collect();
+    assert_eq!(counts, [6, 2]);
+    for (of, band) in row.by_form.iter().zip(["0.13", "0.052"]) {
+        let fuel = |words: &[&str]| {
+            let band = format!("lubricant.friction.band={band}");
+            let all = words.iter().copied().chain([band.as_str()]);
+            let options = Options {
+                set: all.map(|text| text.parse().unwrap()).collect(),
+                ..Options::default()
+            };
+            let setup = setup::load(CVT, &options).unwrap();
+            let all = drive(&setup, &cycle("ece15"), &at(25.0, Start::Soak))
+                .totals
+                .total();
+            let density = setup.engine().fuel_density_kg_m3;
+            litres_per_100km(all.fuel_kg, density, all.distance_m)
+        };
+        let offset = fuel(&["transmission.cvt.belt.band_offset_mm=1"]);
+        let by_hand = 100.0 * (offset / fuel(&[]) - 1.0);
+        let median = of.median_percent;
+        assert!(
+            (median - by_hand).abs() < 1e-4,
+            "{}: {median} and {by_hand}",
+            of.form
+        );
+    }
+    assert!(row.depends_on_form() && !row.is_open_by_form());
+}
+
+/// Property: one form with all of the weight gives the bits of the same plan without forms.
+#[test]
+fn one_form_is_no_form() {
+    let plan = |form: &str, of_form: &str| {
+        let text = format!(
+            "[study.design.latin_hypercube]\nsamples = 2\nseed = 1\n{form}[[factor]]\nkey = \"lubricant.friction.band\"\n{of_form}\
+             status = \"assumed\"\ndistribution.uniform = {{ low = 0.09, high = 0.14 }}\n"
+        );
+        Plan::read("forms.toml", &text).unwrap()
+    };
+    let fuel = |plan: Plan| {
+        let text = lever("offset", &["transmission.cvt.belt.band_offset_mm=1"]);
+        let mut asked = request(&text, 5);
+        if let Some((own, ..)) = &mut asked.draws {
+            *own = plan;
+        }
+        let done = run(&asked, 2);
+        assert!(done.row("offset").by_form.is_empty());
+        let all = done.column(FUEL).into_iter().flatten();
+        all.map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let one = plan("[[form]]\nname = \"bands\"\n", "form = \"bands\"\n");
+    assert_eq!(fuel(one), fuel(plan("", "")));
+}

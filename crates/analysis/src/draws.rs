@@ -381,6 +381,7 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
     let cars = study.cars.len();
     let (mut list, mut failed) = (Vec::new(), BTreeMap::<String, u64>::new());
     let mut own_fuel = Vec::new();
+    let mut forms = vec![Vec::new(); study.plan.forms_drawn().len()];
     for part in 0..study.parts() {
         let cells = parts.columns(study, part, &["status", "reason", FUEL, FUEL_OVER_TIME]);
         let [
@@ -398,8 +399,9 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
             false => over_time,
         };
         let points = status.chunks_exact(cars).zip(reason.chunks_exact(cars));
+        let points = study.part_points(part).zip(points);
         let fuels = fuel.chunks_exact(cars).zip(compared.chunks_exact(cars));
-        for ((status, reason), (own, fuel)) in points.zip(fuels) {
+        for ((point, (status, reason)), (own, fuel)) in points.zip(fuels) {
             if &*status[0] == "ok" {
                 own_fuel.push(own[0]);
             }
@@ -408,7 +410,12 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
                     true => (fuel[other], fuel[0]),
                     false => (fuel[0], fuel[other]),
                 };
-                list.push(100.0 * (own / of - 1.0)); // AW-1
+                let percent = 100.0 * (own / of - 1.0); // AW-1
+                list.push(percent);
+                let form = study.plan.form_of(point);
+                if let Some(of_form) = form.and_then(|form| forms.get_mut(form)) {
+                    of_form.push(percent);
+                }
                 continue;
             }
             let of_pair = [0, other].map(|car| &*reason[car]);
@@ -422,7 +429,14 @@ fn difference(study: &Study, parts: &Parts, (other, is_run): (usize, bool)) -> D
     reasons.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
     let summary = Summary::new(&list, Confidence::default());
     let more = Share::above_zero(&list, None);
+    let forms = study.plan.forms_drawn().iter().zip(&forms);
+    let forms = forms.filter(|(_, list)| !list.is_empty());
+    let by_form = forms.map(|(form, list)| {
+        let median = Summary::new(list, Confidence::default()).quantile(0.5);
+        (form.title.clone(), list.len() as u64, median)
+    });
     DrawnDifference {
+        by_form: by_form.collect(),
         plan: PLAN.to_owned(),
         draws: more.n as u64,
         left_out: study.points - more.n as u64,

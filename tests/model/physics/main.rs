@@ -14,6 +14,7 @@ mod allocation;
 mod belt_properties;
 mod cold;
 mod box_map;
+mod chain_car;
 mod change_an_equation;
 mod conserve;
 mod cvt_part_properties;

@@ -7,7 +7,7 @@ use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::lubricant::{BandFriction, Friction};
 use cvtcycle_model::math::{Curve, Gather, Mask, Real, asin, ramp, tanh};
 use cvtcycle_model::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
+    Belt, BeltAtRatio, BeltLoad, BeltState, Chain, Formulation, belt_state,
 };
 
 /// Evaluates an expression with a zero of each width, of the best instructions that this processor has and of those that all have.
@@ -118,7 +118,7 @@ fn oil_friction() -> Friction {
     car.car(298.15).oil.friction
 }
 
-fn drawn(formulation: Formulation, of: &Friction, draw: &mut Draw) -> Drawn {
+fn drawn(formulation: Formulation, chained: bool, of: &Friction, draw: &mut Draw) -> Drawn {
     let mut near = |x: f64| x * draw.between(0.9, 1.1);
     let belt = |_| {
         let belt = thesis_belt(formulation);
@@ -130,6 +130,12 @@ fn drawn(formulation: Formulation, of: &Friction, draw: &mut Draw) -> Drawn {
             unity_width: near(belt.unity_width),
             initial_gap_m: near(1e-4),
             shoulder_friction: near(1.0),
+            chain: chained.then(|| Chain {
+                joint_m: near(2e-5),
+                pin_m: near(4e-4),
+                slip: near(0.02),
+                stiffness_n: near(5e6),
+            }),
             ..belt
         }
     };
@@ -172,9 +178,13 @@ fn hold_belts<R: Real>(like: R, of: &Drawn) {
 #[test]
 fn each_lane_has_the_bits_of_its_run_alone() {
     let (friction, mut draw) = (oil_friction(), Draw(22));
-    for formulation in ALL {
+    for (formulation, chained) in ALL
+        .map(|formulation| (formulation, false))
+        .into_iter()
+        .chain([(Formulation::Smooth, true)])
+    {
         for _ in 0..500 {
-            let drawn = drawn(formulation, &friction, &mut draw);
+            let drawn = drawn(formulation, chained, &friction, &mut draw);
             with_lanes!(like => hold_belts(like, &drawn));
         }
     }

@@ -6,6 +6,7 @@
 //! | PV-2 | the two quantiles of d between which that share of the draws is, 90 % by default (DS-3), each with its own interval (IV-3) | source: Hyndman and Fan 1996 |
 //! | PV-3 | a lever saves in k of n draws; the share of all cases from it by IV-2 | source: Clopper and Pearson 1934 |
 //! | PV-4 | interaction of a combination: its median d less the sum of those of its levers | derived |
+//! | PV-5 | median of d over the draws of each form (DE-10); the forms differ in sign, or by more than a third of the range of PV-2 | derived; ASSUMED: a third |
 //!
 //! Draws of which one of the two runs failed are left out of d and counted.
 
@@ -151,11 +152,27 @@ pub struct LeverRow {
     /// Sum of the medians of the levers of a combination, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sum_percent: Option<f64>,
+    /// Median by form of the law, where the plan has several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_form: Vec<OfForm>,
     /// The uncertain value that sets the size of the change; none where no value is seen to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub set_by: Option<SetBy>,
     /// Effects other than fuel.
     pub effects: Vec<SideEffect>,
+}
+
+/// A change over the draws of one form of a law (PV-5).
+#[derive(Clone, Debug, Serialize)]
+pub struct OfForm {
+    /// Name of the form.
+    pub form: String,
+    /// Name for people.
+    pub title: String,
+    /// Draws with both runs.
+    pub n: usize,
+    /// Median change of the fuel, %.
+    pub median_percent: f64,
 }
 
 /// A number that a lever moves besides the fuel.
@@ -210,6 +227,23 @@ impl LeverRow {
     /// True if it fails in most of the draws in which its reference does not.
     pub fn does_not_work(&self) -> bool {
         is_most(self.failed, self.failed + self.n)
+    }
+
+    /// True if the forms do not agree (PV-5): on the sign, or by more than a third of the range.
+    pub fn depends_on_form(&self) -> bool {
+        let medians = || self.by_form.iter().map(|of| of.median_percent);
+        let (low, high) = (
+            medians().fold(f64::NAN, f64::min),
+            medians().fold(f64::NAN, f64::max),
+        );
+        let range = self.high_percent.value - self.low_percent.value;
+        self.is_open_by_form() || high - low > range / 3.0 // PV-5
+    }
+
+    /// True if it saves in one form and does not in another.
+    pub fn is_open_by_form(&self) -> bool {
+        let saves = |of: &OfForm| of.median_percent < -NOTHING_PERCENT;
+        self.by_form.iter().any(saves) && !self.by_form.iter().all(saves)
     }
 
     /// A side effect by its name.
@@ -426,6 +460,27 @@ fn set_by(outline: &StudyManifest, percent: &[f64], confidence: Confidence) -> O
     })
 }
 
+/// Medians by form; none of a plan with one form, or of draws that have none of its values.
+fn by_form(outline: &StudyManifest, percent: &[f64]) -> Vec<OfForm> {
+    let plan = &outline.plan;
+    let mut by_form = vec![Vec::new(); plan.forms_drawn().len()];
+    for (point, x) in (0..).zip(percent) {
+        let form = plan.form_of(point).filter(|_| x.is_finite());
+        if let Some(of_form) = form.and_then(|form| by_form.get_mut(form)) {
+            of_form.push(*x);
+        }
+    }
+    let named = plan.forms_drawn().iter().zip(by_form);
+    let of = named.filter(|(_, list)| !list.is_empty());
+    of.map(|(form, list)| OfForm {
+        form: form.name.clone(),
+        title: form.title.clone(),
+        n: list.len(),
+        median_percent: median(list.into_iter()),
+    })
+    .collect()
+}
+
 fn row(
     column: usize,
     note: &ColumnNote,
@@ -469,6 +524,7 @@ fn row(
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,
+        by_form: by_form(outline, &percent),
         set_by: set_by(outline, &percent, confidence),
         effects: effects
             .map(|((name, unit, largest), of)| {

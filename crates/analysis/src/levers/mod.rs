@@ -20,7 +20,9 @@ mod request;
 mod tables;
 mod words;
 
-pub use answer::{Between, LeverAnswer, LeverBlock, LeverRow, SetBy, SideEffect, lever_answer};
+pub use answer::{
+    Between, LeverAnswer, LeverBlock, LeverRow, OfForm, SetBy, SideEffect, lever_answer,
+};
 pub use combine::{COMBINE, Combine};
 pub use prepare::prepare;
 pub use request::{ColumnNote, LeverNotes, LeverRequest};

@@ -45,6 +45,9 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         let list = open.join(", ");
         sentences.push(format!("It is open whether these save: {list}."));
     }
+    for row in single().filter(|row| row.depends_on_form()) {
+        sentences.push(by_form(row));
+    }
     for row in all().filter(|row| row.does_not_work()) {
         let (name, draws) = (&row.of.name, row.failed + row.n);
         let why = why(&row.reasons);
@@ -73,6 +76,19 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         ));
     }
     sentences
+}
+
+/// The change of a lever in each form of a law, in a sentence.
+fn by_form(row: &LeverRow) -> String {
+    let of_forms = row.by_form.iter();
+    let of_forms =
+        of_forms.map(|of| format!("{} % with {}", signed(of.median_percent, 2), of.title));
+    let list = of_forms.collect::<Vec<_>>().join(", ");
+    let end = match row.is_open_by_form() {
+        true => "; the form decides whether it saves",
+        false => "; the form decides how much",
+    };
+    format!("{} by the form of the law: {list}{end}.", row.of.title)
 }
 
 /// Two levers against each other in a sentence.

@@ -90,6 +90,7 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
         reasons: Vec::new(),
         more: count(8)?,
         percent: [number(9)?, number(10)?, number(11)?],
+        by_form: Vec::new(),
     })
 }
 

@@ -395,6 +395,8 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
                 "the median of the varied runs is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
             ));
         }
+        let forms = of.forms_in_words();
+        doubts.extend(forms.map(|list| format!("by the form of the law: {list}")));
         let baseline = &comparison.baseline;
         (!doubts.is_empty()).then(|| format!("Varied runs against {baseline}: {}.", doubts.join("; ")))
     });

@@ -23,7 +23,10 @@ use crate::problem::{Problem, Problems};
 use crate::reader::log::{KeyInfo, Log};
 use crate::reader::path::parent;
 use crate::reader::recorded::Recorded;
-use crate::reader::unknown::{is_row, unread};
+use crate::reader::unknown::{BELT, is_row, unread};
+
+/// Choice between a belt and a chain.
+const KIND_OF_BELT: [&str; 4] = ["transmission", "cvt", "belt", "kind"];
 
 /// One reading session. It collects all problems and what is known about every key that is read.
 pub struct Reader<'d> {
@@ -119,8 +122,12 @@ impl<'d> Reader<'d> {
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
         // Inherited keys that another box or engine model leaves unused are no mistake of the file.
+        // So are those of a belt whose place a chain takes by an assignment.
+        let kind = document.root.node(&KIND_OF_BELT);
+        let by_assignment = kind.is_some_and(|node| node.span.is_set());
         let useless = |(path, entry): &(String, &Entry)| {
-            document.parent(&entry.key).is_some() && is_row(path)
+            let replaced = by_assignment && path.starts_with(BELT) && !entry.key.is_set();
+            (document.parent(&entry.key).is_some() || replaced) && is_row(path)
         };
         unknown.retain(|found| !useless(found));
         for (path, entry) in unknown {

@@ -67,6 +67,9 @@ const BY_GEARS: &str = "give `[transmission.manual.gears]` with `stages`, `beari
 const WITHOUT_BOUNDS: &str =
     "remove it: band friction follows `band_rise_per_k` at any temperature, without bounds (LU-4)";
 
+/// Table whose keys of bands and segments a chain has not.
+pub(crate) const BELT: &str = "transmission.cvt.belt.";
+
 impl Log {
     /// The problem of an entry that was not read, and the known key it most likely means.
     pub fn unknown(
@@ -108,6 +111,11 @@ impl Log {
         let replaced = |key: &str| path.ends_with(key) || parent(path).ends_with(key);
         if let Some((_, instead)) = REPLACED.iter().find(|(key, _)| replaced(key)) {
             problem.hint = (*instead).to_string();
+            return (problem, None);
+        }
+        if path.starts_with(BELT) && is_row(path) {
+            problem.message = format!("`{path}` is of a pushing belt, and this car has a chain");
+            problem.hint = "remove it, or set transmission.cvt.belt.kind = \"push_belt\" with all keys of a belt".to_owned();
             return (problem, None);
         }
         if let Some(known) = self.other_unit(path, span) {

@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + wedge + penetration, F_i = -s (k_i mu_b (1-u_i)(1 - (i-1)/n) beta Tm + V_i), V_i the film's force, k_1 that of the shoulders | derived: moments about the centres of both pulleys; slip is not in them |
 //! | PX-2 | one F_1 and Tm = A + \|C_x\|/2, C_x = T_s/R_s - F_1, on both pulleys: what bands and film lose over their levers, step and mean tension | derived: a belt of two strands has one step of tension |
+//! | PX-9 | a chain, for PX-1: T_p = T_1 (R_p + e) - T_2 (R_p - e) + M_p, T_s = T_1 (R_s - e) - T_2 (R_s + e) - M_s, M the moments of its pin ends as work, joint by joint; for PX-2: the strands by the loss of its joints are those of the free body of the secondary's wrap | derived: moments about the centres of both pulleys |
 //! | PX-3 | burnt fuel <= charge eta_v rho_0 V w/(4 pi) LHV/14.6, eta_v 1.05 or what the full-load line needs | derived: the air in the cylinders; 14.6 stoichiometric, 1.05 ASSUMED of an engine without charger |
 //! | PX-4 | rotating energy, the sum of its changes, = J w2/2 at the end of every step; less only where the engine gives full load, or the brakes all that they have (SI-5), and more is wanted | derived |
 //! | PX-5 | losses >= 0, T_p w_p >= T_s w_s, no belt loss at rest | derived: second law |
@@ -25,7 +26,7 @@ use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat};
 use crate::transmission::Transmission;
 use crate::transmission::component::Component;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Chain, belt_state};
 use std::f64::consts::PI;
 
 /// A law that is checked.
@@ -142,9 +143,11 @@ impl Finding {
 }
 
 /// Parts of the loss between the shafts of both pulleys.
-const BELT_PARTS: [Component; 6] = [
+const BELT_PARTS: [Component; 8] = [
     Component::BeltBand,
     Component::BeltFilm,
+    Component::ChainJoint,
+    Component::ChainPin,
     Component::BeltSlip,
     Component::BeltWedge,
     Component::BeltPenetration,
@@ -289,7 +292,63 @@ impl<'a> PhysicsCheck<'a> {
         }
     }
 
+    /// PX-9.
+    fn chain_statics(&mut self, belt: &Belt, chain: &Chain, row: &Row, load: &BeltLoad) {
+        let (ratio, w) = (row.belt_ratio, load.primary_speed_rad_s);
+        let radii = Radii::new(belt, ratio);
+        let ([r_p, r_s], wraps) = (radii.radius_m, radii.wrap_rad);
+        let thrust = match &belt.thrust_ratio {
+            Some(_) => BeltAtRatio::new(belt, ratio).thrust_ratio,
+            None => wraps[0] / wraps[1],
+        };
+        let clamp_n = [load.secondary_clamp_n * thrust, load.secondary_clamp_n];
+        let output_nm = load.output_torque_nm;
+        // The secondary changes the tension over the last part of its wrap, with all the friction there is.
+        let grip_n =
+            2.0 * load.capacity_friction * smaller(clamp_n[0], clamp_n[1]) / belt.cos_wedge;
+        let pull_n = output_nm / r_s;
+        let slides = smaller(pull_n.abs() / grip_n, 1.0);
+        let (v, pressed_n) = (w * r_p, 2.0 * clamp_n[1] * belt.tan_wedge / wraps[1]);
+        let in_n = pressed_n + belt.mass_kg_m * v * v - 0.5 * slides * pull_n;
+        let strands_n = 2.0 * in_n + pull_n;
+        // Work of the pin ends a second: joints that pass, twice a turn against two faces.
+        let pitch_m = belt.segment_thickness_m;
+        let pin_w = |pulley: usize| {
+            let turn = pitch_m / radii.radius_m[pulley];
+            let face_n = clamp_n[pulley] / belt.cos_wedge * turn / wraps[pulley];
+            2.0 * (v / pitch_m) * turn * (2.0 * load.flank_friction * face_n * chain.pin_m)
+        };
+        let pins_nm = [pin_w(0) / w, pin_w(1) * ratio / w];
+        // The tight strand is longer by what joints and pins of the secondary take.
+        let e = chain.joint_m;
+        let tight_n = (output_nm + e * strands_n + pins_nm[1]) / r_s;
+        let by_moments_nm = tight_n * r_p + e * strands_n + pins_nm[0];
+        let rest_nm =
+            (row.loss_w[Component::BeltWedge] + row.loss_w[Component::BeltPenetration]) / w;
+        let size_nm =
+            output_nm.abs() / ratio + row.primary_nm.abs() + by_moments_nm.abs() + rest_nm;
+        self.see(
+            Law::Statics,
+            row,
+            (row.primary_nm - by_moments_nm - rest_nm).abs(),
+            SOLVED * (size_nm + 1.0),
+        );
+        let lever_m = e * (1.0 + 1.0 / ratio);
+        if lever_m > 1e-9 {
+            let apart_n = (row.loss_w[Component::ChainJoint] / w / lever_m - strands_n).abs();
+            self.see(
+                Law::OneForce,
+                row,
+                apart_n,
+                10.0 * SOLVED * (strands_n + 1.0),
+            );
+        }
+    }
+
     fn statics(&mut self, belt: &Belt, row: &Row, load: &BeltLoad) {
+        if let Some(chain) = &belt.chain {
+            return self.chain_statics(belt, chain, row, load);
+        }
         let (ratio, w) = (row.belt_ratio, load.primary_speed_rad_s);
         let at = BeltAtRatio::new(belt, ratio);
         let radii = Radii::new(belt, ratio);

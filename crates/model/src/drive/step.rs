@@ -442,7 +442,7 @@ pub fn loss_heat_w<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     loss_w: &ByComponent<R>,
 ) -> [R; NODES] {
-    const BELT_HEAT: [Component; 6] = heating(HeatTo::Belt);
+    const BELT_HEAT: [Component; 8] = heating(HeatTo::Belt);
     const METAL_HEAT: [Component; 4] = heating(HeatTo::Metal);
     const COUPLING_HEAT: [Component; 1] = heating(HeatTo::Coupling);
     const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
@@ -454,7 +454,7 @@ pub fn loss_heat_w<R: Real, T: Driveline<R>>(
             zero $(+ loss_w[$components[$place]])*
         };
     }
-    let belt = sum!(BELT_HEAT: 0 1 2 3 4 5);
+    let belt = sum!(BELT_HEAT: 0 1 2 3 4 5 6 7);
     let metal = sum!(METAL_HEAT: 0 1 2 3);
     let coupling = sum!(COUPLING_HEAT: 0);
     let sump = sum!(SUMP_HEAT: 0 1 2 3 4 5 6);

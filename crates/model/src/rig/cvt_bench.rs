@@ -77,6 +77,8 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             slip_total: p.slip_total,
             band_nm: sum(p.band_loss_nm),
             film_nm: sum(p.film_loss_nm),
+            joint_nm: sum(p.joint_loss_nm),
+            pin_nm: sum(p.pin_loss_nm),
             slip_nm: sum(p.slip_loss_nm),
             wedge_nm: sum(p.wedge_loss_nm),
             penetration_nm: sum(p.penetration_loss_nm),

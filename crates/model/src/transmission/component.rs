@@ -12,8 +12,12 @@ pub enum Part {
     Coupling,
     /// CVT, outside the belt.
     Cvt,
-    /// CVT: a part of the belt's loss, absent where a map replaces the belt.
+    /// CVT: a part of the loss of belt or chain, absent where a map replaces it.
     Belt,
+    /// CVT with a pushing belt: as [`Part::Belt`].
+    Bands,
+    /// CVT with a chain: as [`Part::Belt`].
+    Chain,
     /// CVT whose belt is replaced by a measured map.
     BeltMap,
     /// Manual box, absent where a map replaces the box.
@@ -25,7 +29,10 @@ pub enum Part {
 impl Part {
     /// True for the components of a CVT alone, without its coupling.
     pub const fn is_cvt(self) -> bool {
-        matches!(self, Part::Cvt | Part::Belt | Part::BeltMap)
+        matches!(
+            self,
+            Part::Cvt | Part::Belt | Part::Bands | Part::Chain | Part::BeltMap
+        )
     }
 }
 
@@ -161,9 +168,11 @@ components! {
     ClutchDrag: "clutch_drag", "Clutch drag", Cvt, Sump, Shafts, Fill::Cvt(3), Some("clutch_drag"), "drag of the open reverse clutch";
     SealRing: "seal_ring", "Seal ring", Cvt, Sump, Shafts, Fill::Cvt(4), Some("seal_ring"), "friction of the rings that seal the oil feed of the rotating cylinders";
     PulleyBearing: "pulley_bearing", "Pulley bearing", Belt, Metal, Shafts, Fill::Cvt(5), None, "load friction of the pulley shafts' bearings under the belt's pull";
-    BeltBand: "belt_band", "Belt band", Belt, Belt, Belt, Fill::Cvt(6), None, "boundary friction between bands and between band and segments";
-    BeltFilm: "belt_film", "Belt film", Belt, Belt, Belt, Fill::Cvt(7), None, "viscous shear between the bands";
-    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Belt, Fill::Cvt(8), None, "sliding of the segments along the pulleys";
+    BeltBand: "belt_band", "Belt band", Bands, Belt, Belt, Fill::Cvt(6), None, "boundary friction between bands and between band and segments";
+    BeltFilm: "belt_film", "Belt film", Bands, Belt, Belt, Fill::Cvt(7), None, "viscous shear between the bands";
+    ChainJoint: "chain_joint", "Chain joint", Chain, Belt, Belt, Fill::Cvt(6), None, "friction in the rocker joints of a chain";
+    ChainPin: "chain_pin", "Chain pin", Chain, Belt, Belt, Fill::Cvt(7), None, "friction of the pin ends of a chain, which turn on the sheaves at entry and exit";
+    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Belt, Fill::Cvt(8), None, "sliding of the segments, or of a chain's pins, along the pulleys";
     BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Belt, Fill::Cvt(9), None, "wedging at pulley entry and exit";
     BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Belt, Fill::Cvt(10), None, "penetration into the deflected pulleys";
     BeltMap: "belt_map", "Belt map", BeltMap, Belt, Belt, Fill::Cvt(6), Some("belt"), "loss of the whole belt, from its measured map";

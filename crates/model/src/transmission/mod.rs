@@ -17,6 +17,7 @@ pub use step::{DrivelineState, StepInput, StepOutput};
 use self::component::{Component, Part};
 use self::coupling::Coupling;
 use self::cvt::CvtState;
+use self::cvt::variator::Belt;
 use self::loss_factor::LossFactors;
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::maps::LossMap;
@@ -207,7 +208,11 @@ impl Transmission {
     /// Loss components of the transmission, in the order of the power flow.
     pub fn components(&self) -> Vec<Component> {
         let mapped = self.maps().map(|(component, _)| component.part());
-        components(self.is_cvt(), &mapped.collect::<Vec<_>>())
+        let kind = match self {
+            Transmission::Cvt(cvt) => BoxKind::of_belt(&cvt.belt),
+            Transmission::Manual(_) => BoxKind::Manual,
+        };
+        components(kind, &mapped.collect::<Vec<_>>())
     }
 
     /// The coupling between engine and box.
@@ -238,8 +243,27 @@ impl Transmission {
     }
 }
 
+/// What has the power in a box.
+#[derive(Clone, Copy, PartialEq)]
+enum BoxKind {
+    Manual,
+    Belt,
+    Chain,
+}
+
+impl BoxKind {
+    /// A CVT by its belt.
+    fn of_belt(belt: &Belt) -> Self {
+        match belt.chain {
+            Some(_) => BoxKind::Chain,
+            None => BoxKind::Belt,
+        }
+    }
+}
+
 /// Loss components of a CVT or of a manual box, of which the parts `mapped` are measured maps.
-fn components(cvt: bool, mapped: &[Part]) -> Vec<Component> {
+fn components(kind: BoxKind, mapped: &[Part]) -> Vec<Component> {
+    let cvt = kind != BoxKind::Manual;
     let [belt, whole] = [Part::BeltMap, Part::BoxMap].map(|part| mapped.contains(&part));
     Component::ALL
         .into_iter()
@@ -247,6 +271,8 @@ fn components(cvt: bool, mapped: &[Part]) -> Vec<Component> {
             Part::Coupling => true,
             Part::Cvt => cvt && !whole,
             Part::Belt => cvt && !whole && !belt,
+            Part::Bands => kind == BoxKind::Belt && !whole && !belt,
+            Part::Chain => kind == BoxKind::Chain && !whole && !belt,
             Part::BeltMap => cvt && !whole && belt,
             Part::Manual => !cvt && !whole,
             Part::BoxMap => whole,

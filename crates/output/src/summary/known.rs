@@ -1,5 +1,6 @@
 //! External knowledge of a result: its uncertainty, and the published numbers that it contradicts.
 
+use crate::number::signed;
 use serde::{Deserialize, Serialize};
 
 /// Difference of fuel over the draws of a plan of uncertainty, for exactly this case.
@@ -23,6 +24,9 @@ pub struct DrawnDifference {
     /// Quantiles 0.05, 0.5 and 0.95 of the fuel of the subject over the draws in which it works, L/100 km; none where too many fail.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fuel_l_per_100km: Option<[f64; 3]>,
+    /// Median by form of a law, per cent, with the form's name for people and its draws; empty where the plan has one form.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub by_form: Vec<(String, u64, f64)>,
 }
 
 /// Numbers of which JSON has null for what is not finite.
@@ -53,6 +57,19 @@ impl DrawnDifference {
         let is_known =
             self.failed_share() <= FAILED_SHARES[1] && ends.iter().all(|x| x.is_finite());
         is_known.then_some(ends)
+    }
+
+    /// "+3.1 % with one form, +1.2 % with another"; `None` where the forms of a law agree: in sign, and within a third of the range.
+    #[must_use]
+    pub fn forms_in_words(&self) -> Option<String> {
+        let medians = || self.by_form.iter().map(|(_, _, median)| *median);
+        let (low, high) = (medians().reduce(f64::min)?, medians().reduce(f64::max)?);
+        let differ =
+            (low < 0.0) != (high < 0.0) || high - low > (self.percent[2] - self.percent[0]) / 3.0;
+        let words = self.by_form.iter();
+        let words =
+            words.map(|(title, _, median)| format!("{} % with {title}", signed(*median, 1)));
+        differ.then(|| words.collect::<Vec<_>>().join(", "))
     }
 
     /// "56 of 256 runs with uncertain values varied fail: gross_slip in 40, not_converged in 20"; `None` where so few fail that it is no risk.

@@ -487,6 +487,7 @@ mod tests {
             n: 256,
             failed: 0,
             reasons: Vec::new(),
+            by_form: Vec::new(),
             fuel_percent: quantile,
             low_percent: quantile,
             high_percent: quantile,

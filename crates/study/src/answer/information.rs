@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::Column as Found;
+use super::levels::value;
 use crate::design::{Role, saltelli_role};
 use crate::plan::{Factor, FactorValue, Plan};
 use crate::statistics::{
@@ -169,9 +170,7 @@ fn chance(plan: &Plan, points: &[u64], found: &[f64], confidence: Confidence) ->
 /// The values of a factor at some points.
 fn column(plan: &Plan, factor: usize, points: &[u64]) -> Column {
     let of = &plan.factors[factor];
-    let values = points
-        .iter()
-        .map(|point| of.value(plan.design.level(&plan.factors, *point, factor)));
+    let values = points.iter().map(|point| value(plan, factor, *point));
     if of.values.are_numbers() {
         let number = |value: Option<FactorValue>| value.and_then(|x| x.number());
         return Column::Numbers(values.map(|x| number(x).unwrap_or(f64::NAN)).collect());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::plan::{FactorValue, Plan};
+use crate::plan::{Acts, FactorValue, Plan};
 
 /// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
 pub(super) fn values(
@@ -10,8 +10,27 @@ pub(super) fn values(
     factor: usize,
     points: usize,
 ) -> impl Iterator<Item = Option<FactorValue>> {
-    let level = move |point| plan.design.level(&plan.factors, point, factor);
-    (0..points as u64).map(move |point| plan.factors[factor].value(level(point)))
+    (0..points as u64).map(move |point| value(plan, factor, point))
+}
+
+/// The value of a factor at a point. One of another form than that of the point has the value of the point's form for the same key, or else leaves the
+/// key as it is.
+pub(super) fn value(plan: &Plan, factor: usize, point: u64) -> Option<FactorValue> {
+    let at = |f: usize| plan.factors[f].value(plan.design.level(&plan.factors, point, f));
+    let of = &plan.factors[factor];
+    if of.form.is_none() {
+        return at(factor);
+    }
+    let is_like = |f: &usize| (&plan.factors[*f].key, plan.factors[*f].cars) == (&of.key, of.cars);
+    let alike = (0..plan.factors.len()).filter(is_like);
+    let neutral = || match (of.values.are_numbers(), of.acts) {
+        (false, _) => None,
+        (true, Acts::Scale) => Some(FactorValue::Number(1.0)),
+        (true, _) => Some(FactorValue::Number(0.0)),
+    };
+    at(factor)
+        .or_else(|| alike.filter_map(at).next())
+        .or_else(neutral)
 }
 
 /// Numbers of a factor.

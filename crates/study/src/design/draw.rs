@@ -21,6 +21,7 @@ pub(super) enum Purpose {
     Stratum = 2,
     Jitter = 3,
     Sobol = 4,
+    Form = 5,
 }
 
 /// Finalizer of splitmix64 (DE-1): a one-to-one map of 64 bits.

@@ -9,10 +9,11 @@
 //! | DE-6 | Latin hypercube: share = (stratum + jitter)/n, the stratum from a permutation of each factor's own (DE-3), the jitter a draw (DE-2) | source: McKay, Beckman, Conover 1979, doi 10.1080/00401706.1979.10489755 |
 //! | DE-7 | Sobol sequence, Owen-scrambled, moved up by half of its resolution 2^-23 | source: Burley 2020, JCGT 9(4), by the crate sobol_burley; the half step derived |
 //! | DE-8 | Saltelli: of one Sobol point in 2 d dimensions the first d are A_j, the others B_j; AB_j(i) is A_j with factor i from B_j. Points in the order A_j, B_j, AB_j(1) ... AB_j(d), then the next j | source: Saltelli et al. 2010, doi 10.1016/j.cpc.2009.09.018; order ours |
+//! | DE-10 | forms: of n samples sample j has the form m with W_(m-1) <= (p(j) + 1/2)/n < W_m, p a permutation of its own (DE-3), W the sums of the weights over their total; a draw (DE-2) in Monte Carlo | derived |
 
 mod draw;
 
-use super::plan::{Design, Factor, FactorValues};
+use super::plan::{Design, Factor, FactorValues, within};
 pub use super::plan::{Level, MAX_SOBOL_SAMPLES};
 use draw::{Purpose, mix, permute, uniform};
 
@@ -67,6 +68,13 @@ impl Design {
     /// In a Sobol design if the factor's dimension is beyond [`super::plan::MAX_SOBOL_DIMENSIONS`], which no plan that was read has.
     pub fn level(&self, factors: &[Factor], point: u64, factor: usize) -> Level {
         let column = factor as u64;
+        let span = factors.get(factor).and_then(|of| of.form.as_ref());
+        let share = self.form_share(point, factors.len());
+        if let (Some(of), Some(share)) = (span, share)
+            && !within(of.span, share)
+        {
+            return Level::Base; // DE-10
+        }
         match *self {
             Design::Grid => {
                 let radix = |radix: u64, other| radix.saturating_mul(self.entries(other));
@@ -101,6 +109,20 @@ impl Design {
                 Level::Share(sobol(sample, first + factor, seed)) // DE-8
             }
         }
+    }
+
+    /// Share at which a point draws its form, within 0 and 1 (DE-10); none in a design that draws nothing.
+    pub fn form_share(&self, point: u64, factors: usize) -> Option<f64> {
+        let (sample, n, seed) = match *self {
+            Design::Grid | Design::OneAtATime { .. } => return None,
+            Design::MonteCarlo { seed, .. } => return Some(uniform(seed, Purpose::Form, point, 0)),
+            Design::LatinHypercube { samples, seed } | Design::Sobol { samples, seed } => {
+                (point, samples, seed)
+            }
+            Design::Saltelli { samples, seed } => (saltelli_role(factors, point).0, samples, seed),
+        };
+        let place = permute(sample, n, mix(seed, Purpose::Form, 0, 0));
+        Some((place as f64 + 0.5) / n as f64)
     }
 
     /// The same design with other samples or another seed; none for a design that has neither.

@@ -99,6 +99,7 @@ pub fn with_ranges(plan: Plan, of_cvts: bool, cars: &[&Setup]) -> Plan {
                 cars,
                 acts: Acts::Value,
                 values: FactorValues::Distribution(Distribution::Triangular { low, mode, high }),
+                form: None,
                 status: match info.status.as_str() {
                     status @ ("source" | "derived" | "fitted") => status.to_owned(),
                     _ => "assumed".to_owned(),
@@ -109,10 +110,13 @@ pub fn with_ranges(plan: Plan, of_cvts: bool, cars: &[&Setup]) -> Plan {
                 places: Places::new(plan.places.place("").clone()),
             };
             let factor = over(&absolute, mode);
+            // The range of a car is known in all forms: their own values of the key go.
             match place {
                 Some(at) => factors[at] = factor,
                 None => factors.push(factor),
             }
+            let of_form = |of: &Factor| of.form.is_some() && (&of.key, of.cars) == (&id.0, cars);
+            factors.retain(|of| !of_form(of));
             known.push(id);
         }
     }

@@ -106,7 +106,12 @@ pub(super) fn clashes(factors: &[Factor]) -> Problems {
             found.map(|other| other.place.line)
         };
         let overlaps = |other: &Factor| {
-            other.cars == factor.cars || other.cars == Cars::All || factor.cars == Cars::All
+            let is_apart = match (&other.form, &factor.form) {
+                (Some(a), Some(b)) => a.name != b.name,
+                _ => false,
+            };
+            let is_shared = [other.cars, factor.cars].contains(&Cars::All);
+            !is_apart && (other.cars == factor.cars || is_shared)
         };
         if let Some(line) = earlier(&|other| other.key == factor.key && overlaps(other)) {
             let message = format!(

@@ -2,7 +2,7 @@
 
 use super::keys::{FACTOR, quantity, run_option};
 use super::values::{self, Of};
-use super::{Acts, Cars, Factor, FactorValues, Places, RUN_OPTIONS};
+use super::{Acts, Cars, Factor, FactorValues, OfForm, Places, RUN_OPTIONS};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Key, Presence, Values};
@@ -17,7 +17,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
     let key = key(&s);
     let cars = cars(&s, &key);
     let mut places = Places::new(s.place(""));
-    for key in ["key", "name", "cars"] {
+    for key in ["key", "name", "cars", "form"] {
         places.add_given(&s, key, key);
     }
     let acts = acts(&s, &key);
@@ -41,6 +41,10 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
     }
     let factor = Factor {
         name: name(&s, &key, cars),
+        form: s.has("form").then(|| OfForm {
+            name: Values::text_or(&s, &FACTOR.form, ""),
+            span: [0.0, 1.0],
+        }),
         unit: if is_number {
             unit(&key, acts)
         } else {
@@ -141,6 +145,7 @@ fn acts(s: &Section, key: &str) -> Acts {
 /// Name of a factor; two of the same key differ by their cars.
 fn name(s: &Section, key: &str, cars: Cars) -> String {
     let default = match cars {
+        _ if s.has("form") => format!("{key} ({})", Values::text_or(s, &FACTOR.form, "")),
         Cars::Baselines => format!("{key} (baselines)"),
         _ => key.to_owned(),
     };

@@ -14,8 +14,11 @@ pub(super) const MAX_IN_RANGE: i64 = 10_000;
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
 /// A plan: its head and its factors.
-pub const PLAN: Table =
-    Table::from_tables(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
+pub const PLAN: Table = Table::from_tables(&[
+    StudyKeys::TABLE,
+    FormKeys::TABLE.repeated(Repeat::List),
+    FactorKeys::TABLE.repeated(Repeat::List),
+]);
 
 keys! {
     /// Keys of `[study]`.
@@ -112,11 +115,22 @@ keys! {
 }
 
 keys! {
+    /// Keys of `[[form]]`.
+    FORM: FormKeys = "form" [] {
+        name: text(), "short name, by which factors belong to it";
+        title: computed("the name", text()), "name for people";
+        weight: or(1.0, number(0.0, 1e6)), "its weight against the other forms; 0 leaves it out";
+        source: optional(text()), "data that it was fitted to, and how well";
+    }
+}
+
+keys! {
     /// Keys of `[[factor]]`.
     FACTOR: FactorKeys = "factor" [RangeKeys::TABLE.repeated(Repeat::Optional)] {
         key: text(), "run option or dotted key that is varied";
         name: computed("the key", text()), "short name for tables and plots";
         cars: computed("subject; all for run options", words(CARS, "subject")), "whose value it is";
+        form: optional(text()), "name of the form in whose draws alone it acts";
         acts: words(ACTS, "value"), "what a number does with the value of the car's file";
         values: optional(list_of(&Kind::Other(""), "a list of numbers or words")), "values, each for itself";
         distribution: optional(options(DISTRIBUTIONS)), "how the values are distributed";

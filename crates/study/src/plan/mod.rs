@@ -5,6 +5,7 @@
 //! | `keys` | every key of a plan: unit, range, options, default, meaning |
 //! | `read` | the head of a plan, and all its parts together |
 //! | `write` | a plan as TOML |
+//! | `form` | one `[[form]]`, and the factors that act in its draws alone |
 //! | `factor`, `values` | one `[[factor]]` and its list, range or distribution |
 //! | `options` | what the run options allow, as factors and at the head |
 //! | `design` | the design's own keys, and what concerns all factors at once |
@@ -13,6 +14,7 @@
 mod design;
 mod distribution;
 mod factor;
+mod form;
 mod keys;
 mod options;
 mod places;
@@ -53,6 +55,8 @@ pub struct Plan {
     pub base: Base,
     /// Inputs that are varied.
     pub factors: Vec<Factor>,
+    /// Forms of a law, of which each draw has one; empty where there is one form only.
+    pub forms: Vec<Form>,
     /// Combinations that are driven.
     pub design: Design,
     /// Data kept of each run in addition to its summary.
@@ -99,6 +103,35 @@ pub struct Base {
     pub formulation: Formulation,
 }
 
+/// One of several forms of a law: the factors that name it act in its draws alone.
+#[derive(Clone, Debug)]
+pub struct Form {
+    /// Name by which factors belong to it.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// Weight against the other forms.
+    pub weight: f64,
+    /// Data that it was fitted to, and how well.
+    pub source: String,
+    /// Part of the draws that have it, from 0 to 1 (DE-10).
+    pub span: Span,
+    /// Place of its name.
+    pub place: Place,
+}
+
+/// Part of all draws: from the first share, up to but without the second.
+pub type Span = [f64; 2];
+
+/// The form that a factor belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OfForm {
+    /// Name of the form.
+    pub name: String,
+    /// Its part of the draws.
+    pub span: Span,
+}
+
 /// One thing that is varied.
 #[derive(Clone, Debug)]
 pub struct Factor {
@@ -115,6 +148,8 @@ pub struct Factor {
     pub acts: Acts,
     /// The values.
     pub values: FactorValues,
+    /// The form in whose draws alone it acts; none for a factor of all draws.
+    pub form: Option<OfForm>,
     /// `source`, `derived`, `fitted` or `assumed`: how the values are known; empty if not said, which no distribution leaves.
     pub status: String,
     /// Reason or reference for them.
@@ -241,6 +276,21 @@ impl Plan {
         Plan::read(&file, &text)
     }
 
+    /// Index of the form of a point; none where nothing is drawn, or in a plan without forms.
+    pub fn form_of(&self, point: u64) -> Option<usize> {
+        let share = self.design.form_share(point, self.factors.len())?;
+        self.forms.iter().position(|form| within(form.span, share))
+    }
+
+    /// The forms, where there are several and a factor of them is drawn; else none.
+    pub fn forms_drawn(&self) -> &[Form] {
+        let is_drawn = self.factors.iter().any(|factor| factor.form.is_some());
+        match is_drawn && self.forms.len() > 1 {
+            true => &self.forms,
+            false => &[],
+        }
+    }
+
     /// Least and largest number that a factor takes in this plan; none for words. Exact, but for distributions drawn more than 2^20
     /// times ([`Design::share_span`]).
     pub fn span(&self, factor: usize) -> Option<(f64, f64)> {
@@ -257,6 +307,11 @@ impl Plan {
             }
         }
     }
+}
+
+/// True if a share is part of a span.
+pub(crate) fn within([from, to]: Span, share: f64) -> bool {
+    from <= share && share < to
 }
 
 impl FactorValues {

@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::keys::{STUDY, default, known_words};
-use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
+use super::{Base, FactorValue, Keep, Places, Plan, design, factor, form, options};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{
     Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean,
@@ -14,6 +14,7 @@ use cvtcycle_output::trace::COLUMNS;
 pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
     let mut document = Document::parse(file, text)?;
     let tables = document.take_tables("factor");
+    let forms = document.take_tables("form");
     let (mut plan, mut problems) = head(&document, file, text);
     let is_of = |problem: &Problem, key: &str| problem.key.starts_with(key);
     let design_is_read = !problems
@@ -24,6 +25,15 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
             Ok(factor) => plan.factors.push(factor),
             Err(found) => problems.append(found),
         }
+    }
+    for table in &forms {
+        match form::read(table) {
+            Ok(form) => plan.forms.push(form),
+            Err(found) => problems.append(found),
+        }
+    }
+    if plan.forms.len() == forms.len() && plan.factors.len() == tables.len() {
+        problems.append(form::join(&mut plan));
     }
     problems.append(design::clashes(&plan.factors));
     // Factors may be written in a way that gives none.
@@ -56,6 +66,7 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
         question: Values::text_or(&s, &STUDY.question, ""),
         base: base(&s, &mut places),
         factors: Vec::new(),
+        forms: Vec::new(),
         design,
         keep: keep(&s, &mut places),
         analyse: names(&s, &STUDY.analyse, &mut places).unwrap_or_default(),

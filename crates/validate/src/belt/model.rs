@@ -90,6 +90,11 @@ impl Model {
                 .hint(DEFINED)
         };
         let is_printed = formulation != Formulation::Smooth;
+        if is_printed && self.cvt.belt.chain.is_some() {
+            let problem = Problem::invalid("the printed belt model has no chain");
+            let problem = problem.allowed(Formulation::Smooth.name());
+            found.push((RATIO, problem.hint("take the belt model `smooth`")));
+        }
         if let Some(ratio) = given.numbers[RATIO] {
             if !runs(&self.cvt.belt, ratio) {
                 found.push((RATIO, no_geometry(self.ratios)));

@@ -68,6 +68,7 @@ pub fn thesis_belt(formulation: Formulation) -> Belt {
         slip_bound: 0.1,
         shoulder_friction: 1.0,
         thrust_ratio: None,
+        chain: None,
         formulation,
     }
 }

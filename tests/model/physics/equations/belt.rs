@@ -37,6 +37,7 @@ pub fn belt(formulation: Formulation) -> Belt {
         slip_bound: 0.1,
         shoulder_friction: 1.0,
         thrust_ratio: None,
+        chain: None,
         formulation,
     }
 }

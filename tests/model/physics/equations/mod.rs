@@ -16,6 +16,7 @@ use cvtcycle_model::transmission::cvt::Cvt;
 
 mod belt;
 mod bench;
+mod chain;
 mod circuit;
 mod clamp;
 mod control;

@@ -84,6 +84,7 @@ fn index(source: &Path) -> Result<String, String> {
         "label",
         "levers",
         "one_sample",
+        "forms",
         "physics_checks",
         "rigs",
         "start_stop",

@@ -203,6 +203,8 @@ impl<R: Real> PartTorques<R> {
             belt: BeltLosses {
                 band_nm: none,
                 film_nm: none,
+                joint_nm: none,
+                pin_nm: none,
                 slip_nm: none,
                 wedge_nm: none,
                 penetration_nm: none,
@@ -264,6 +266,8 @@ impl<R: Real> PartTorques<R> {
                 give(Component::PulleyBearing, Shaft::Secondary, self.bearing[1]);
                 give(Component::BeltBand, Shaft::Primary, belt.band_nm);
                 give(Component::BeltFilm, Shaft::Primary, belt.film_nm);
+                give(Component::ChainJoint, Shaft::Primary, belt.joint_nm);
+                give(Component::ChainPin, Shaft::Primary, belt.pin_nm);
                 give(Component::BeltSlip, Shaft::Primary, belt.slip_nm);
                 give(Component::BeltWedge, Shaft::Primary, belt.wedge_nm);
                 give(

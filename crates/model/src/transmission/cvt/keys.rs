@@ -21,7 +21,7 @@ use crate::transmission::box_map::{self, CVT_BOX, CVT_BOX_POINTS};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::coupling::{self, Coupling, LAUNCH};
 use crate::transmission::gear_train::GearKeys;
-use crate::transmission::{components, loss_factor};
+use crate::transmission::{BoxKind, components, loss_factor};
 
 /// Table of the final drive: that of a gear train.
 const FINAL_DRIVE: Table = Table {
@@ -100,6 +100,8 @@ keys! {
         pulley_bearing: or(1.0, number(0.0, 5.0)), "factor on the load friction of the pulleys' bearings; 1 is the model, 0 is without it", ["CV-7"];
         belt_band: or(1.0, number(0.0, 5.0)), "factor on the boundary friction of the bands; 1 is the model, 0 is without it", ["CV-7"];
         belt_film: or(1.0, number(0.0, 5.0)), "factor on the shear between the bands; 1 is the model, 0 is without it", ["CV-7"];
+        chain_joint: or(1.0, number(0.0, 5.0)), "factor on the friction in the joints of a chain; 1 is the model, 0 is without it", ["CV-7"];
+        chain_pin: or(1.0, number(0.0, 5.0)), "factor on the friction of the pin ends of a chain; 1 is the model, 0 is without it", ["CV-7"];
         belt_slip: or(1.0, number(0.0, 5.0)), "factor on slip and its loss; 1 is the model, 0 is without it", ["CV-7"];
         belt_wedge: or(1.0, number(0.0, 5.0)), "factor on the loss of wedging; 1 is the model, 0 is without it", ["CV-7"];
         belt_penetration: or(1.0, number(0.0, 5.0)), "factor on the loss of penetration; 1 is the model, 0 is without it", ["CV-7"];
@@ -151,7 +153,7 @@ impl Cvt {
         let maps = changes
             .iter()
             .flat_map(|changes| Component::ALL.map(|c| changes.maps[c].as_ref().map(|_| c.part())));
-        let own = components(true, &maps.flatten().collect::<Vec<_>>());
+        let own = components(BoxKind::of_belt(&belt), &maps.flatten().collect::<Vec<_>>());
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let launch = coupling::from_values(s, &CVT.launch, 5.0);
         let mut cvt = Cvt {

@@ -6,7 +6,7 @@ use crate::transmission::box_map::{self, MANUAL_BOX};
 use crate::transmission::component::Part;
 use crate::transmission::coupling::{self, MANUAL_LAUNCH};
 use crate::transmission::gear_train::{GearKeys, GearParts};
-use crate::transmission::{components, loss_factor};
+use crate::transmission::{BoxKind, components, loss_factor};
 
 keys! {
     /// Keys of `[transmission.manual]` and its tables.
@@ -57,7 +57,7 @@ impl Manual {
         let idle_nm = maps.optional(&MAPS.no_load_loss_nm);
         let map = box_map::from_values(&maps, &MAPS.r#box, &MANUAL_BOX, idle_nm, false);
         let mapped = map.is_some().then_some(Part::BoxMap);
-        let own = components(false, mapped.as_slice());
+        let own = components(BoxKind::Manual, mapped.as_slice());
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let mut manual = Manual {
             shifts: ShiftSpeeds::from_values(s, overall.len()),

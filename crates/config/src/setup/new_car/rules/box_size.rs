@@ -56,7 +56,9 @@ impl Given<'_> {
         }
         self.launch(cvt, &line);
         self.pistons(cvt, highest_nm);
-        self.wide_belt(highest_nm);
+        if cvt.belt.chain.is_none() {
+            self.wide_belt(highest_nm);
+        }
         let (least_kg, kg_nm, of_class_kg) = BOX_KG;
         let share = (least_kg + kg_nm * highest_nm) / of_class_kg;
         let metal_kj_k = share * self.inherited("thermal.transmission.metal_kj_k");

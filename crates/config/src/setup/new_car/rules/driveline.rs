@@ -190,29 +190,36 @@ impl Given<'_> {
             );
             return;
         }
+        let (kg_m, source) = match self.base.transmission() {
+            Transmission::Cvt(cvt) if cvt.belt.chain.is_some() => {
+                let kg_m = cvt.belt.mass_kg_m;
+                (kg_m, format!("NC-4: {kg_m:.2} kg/m, those of the chain"))
+            }
+            _ => (BELT_KG_M, "NC-4: 1.6 kg/m".to_owned()),
+        };
         for (key, value, source) in [
             (
                 "transmission.cvt.belt.length_m",
                 format!("{length_m:.5}"),
-                "NC-4: least running radius 30 mm",
+                "NC-4: least running radius 30 mm".to_owned(),
             ),
             (
                 "transmission.cvt.belt.mass_kg",
-                format!("{:.3}", BELT_KG_M * length_m),
-                "NC-4: 1.6 kg/m",
+                format!("{:.3}", kg_m * length_m),
+                source,
             ),
             (
                 "transmission.cvt.variator.stop_from_ratio",
                 digits(low - STOP),
-                "no deflection of the primary in low",
+                "no deflection of the primary in low".to_owned(),
             ),
             (
                 "transmission.cvt.variator.stop_to_ratio",
                 digits(low),
-                "no deflection of the primary in low",
+                "no deflection of the primary in low".to_owned(),
             ),
         ] {
-            self.follows(key, value, source.to_owned());
+            self.follows(key, value, source);
         }
     }
 

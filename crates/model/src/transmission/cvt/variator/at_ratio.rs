@@ -91,11 +91,18 @@ impl<R: Real> Fixed<R> {
     #[inline]
     fn new(belt: &Belt<R>) -> Self {
         let inv_pitch = 1.0 / belt.segment_thickness_m;
+        let (band_gap_m_n, strut_per_n) = match belt.chain {
+            Some(_) => (inv_pitch.splat(0.0), inv_pitch.splat(0.0)),
+            None => (
+                belt.length_m / (belt.youngs_pa * belt.band_area_m2()),
+                1.0 / (belt.youngs_pa * belt.strut_area_m2),
+            ),
+        };
         Fixed {
             inv_pitch,
             normal_per_clamp: 2.0 / belt.cos_wedge,
-            band_gap_m_n: belt.length_m / (belt.youngs_pa * belt.band_area_m2()),
-            strut_per_n: 1.0 / (belt.youngs_pa * belt.strut_area_m2),
+            band_gap_m_n,
+            strut_per_n,
             mean_offset_m: bands::mean_offset_m(belt),
             outer_part: bands::outer_part(belt),
             coated_part: bands::coated_part(belt),

@@ -1,8 +1,8 @@
-//! The pushing metal V-belt between its two pulleys: from output torque to input torque, loss by loss.
+//! The pushing metal V-belt, or the chain, between its two pulleys: from output torque to input torque, loss by loss.
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
+//! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration; of a chain joints and pin ends in place of band and film (KC-3, KC-4) | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
 //! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only; the printed forms' |
 //! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
@@ -11,6 +11,7 @@
 
 mod at_ratio;
 mod bands;
+mod chain;
 mod deflection;
 mod formulation;
 mod geometry;
@@ -23,6 +24,7 @@ pub mod point;
 
 pub use at_ratio::{BeltAtRatio, Prepared};
 pub use bands::{film_area_m2, pulley_sliding_m_s, sliding_speed_m_s, speed_share};
+pub use chain::{CHAIN, Chain, ChainKeys};
 pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;
@@ -85,6 +87,8 @@ pub struct Belt<R: Real = f64> {
     pub slip_bound: R,
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
     pub thrust_ratio: Option<R::Curve>,
+    /// Joints and pins of a chain, which has no bands and segments.
+    pub chain: Option<Chain<R>>,
     /// Reading of the thesis.
     #[gather(same)]
     pub formulation: Formulation,
@@ -109,7 +113,7 @@ impl<R: Real> Belt<R> {
 
     /// Sliding speeds that can carry a film, at the innermost interface and at each other one, m/s; 0 for formulations without a film.
     pub fn sliding_m_s(&self, ratio: R, primary_rad_s: R) -> [R; 2] {
-        if self.formulation.has_film() {
+        if self.formulation.has_film() && self.chain.is_none() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
             [ratio.splat(0.0); 2]
@@ -141,6 +145,10 @@ pub struct BeltLosses<R: Real = f64> {
     pub band_nm: R,
     /// Shear of the film.
     pub film_nm: R,
+    /// Joints of a chain.
+    pub joint_nm: R,
+    /// Pin ends of a chain.
+    pub pin_nm: R,
     /// Sliding of segments on pulleys.
     pub slip_nm: R,
     /// Wedging.
@@ -161,7 +169,12 @@ pub struct BeltLosses<R: Real = f64> {
 impl<R: Real> BeltLosses<R> {
     /// All belt losses, Nm at the primary shaft.
     pub fn sum_nm(&self) -> R {
-        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+        self.band_nm
+            + self.film_nm
+            + self.slip_nm
+            + self.wedge_nm
+            + self.penetration_nm
+            + (self.joint_nm + self.pin_nm)
     }
 }
 
@@ -182,6 +195,8 @@ impl<R: Real> BeltLosses<R> {
         BeltLosses {
             band_nm: factor[Component::BeltBand] * self.band_nm,
             film_nm: factor[Component::BeltFilm] * self.film_nm,
+            joint_nm: factor[Component::ChainJoint] * self.joint_nm,
+            pin_nm: factor[Component::ChainPin] * self.pin_nm,
             slip_nm: slips * self.slip_nm,
             wedge_nm: factor[Component::BeltWedge] * self.wedge_nm,
             penetration_nm: factor[Component::BeltPenetration] * self.penetration_nm,
@@ -230,6 +245,8 @@ struct Parts<R: Real> {
     slip: Slip<R>,
     band_nm: [R; 2],
     film_nm: R,
+    joint_nm: [R; 2],
+    pin_nm: [R; 2],
     deflection: Deflection<R>,
     capacity_nm: R,
     holding_n: R,
@@ -237,7 +254,11 @@ struct Parts<R: Real> {
 
 #[physics]
 fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R> {
+    if let Some(chain) = &belt.chain {
+        return chain::parts(belt, chain, at, load);
+    }
     let tension = Tension::driving(belt, at, load);
+    let none = [load.output_torque_nm.splat(0.0); 2];
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
     let film_nm = bands::film_loss_nm(at, load);
@@ -253,6 +274,8 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
         },
         band_nm,
         film_nm,
+        joint_nm: none,
+        pin_nm: none,
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(
             at,
@@ -283,6 +306,8 @@ fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
     BeltLosses {
         band_nm: left * sum(parts.band_nm),
         film_nm: left * parts.film_nm,
+        joint_nm: sum(parts.joint_nm),
+        pin_nm: sum(parts.pin_nm),
         slip_nm: share_nm.max(0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),

@@ -60,6 +60,10 @@ pub struct BeltPoint {
     pub wedge_loss_nm: [f64; 2],
     /// Penetration.
     pub penetration_loss_nm: [f64; 2],
+    /// Joints of a chain.
+    pub joint_loss_nm: [f64; 2],
+    /// Pin ends of a chain.
+    pub pin_loss_nm: [f64; 2],
     /// All belt losses.
     pub loss_nm: f64,
     /// Torque at the primary pulley, Nm (VA-1).
@@ -217,6 +221,8 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
             losses.slip_nm,
             [slip.primary_loss_nm, slip.secondary_loss_nm],
         ),
+        joint_loss_nm: parts.joint_nm,
+        pin_loss_nm: parts.pin_nm,
         loss_nm: state.losses.sum_nm(),
         input_torque_nm: state.input_torque_nm,
         active_segments: slip.active_segments,
@@ -311,6 +317,8 @@ fn without_slip(
         slip_loss_nm: [f64::NAN; 2],
         wedge_loss_nm: deflection.wedge_nm,
         penetration_loss_nm: deflection.penetration_nm,
+        joint_loss_nm: [0.0; 2],
+        pin_loss_nm: [0.0; 2],
         loss_nm: f64::NAN,
         input_torque_nm: f64::NAN,
         active_segments: 0.0,

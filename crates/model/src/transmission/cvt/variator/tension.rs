@@ -39,7 +39,7 @@ pub struct Tension<R: Real = f64> {
     pub secondary_shoulder_n: R,
     /// Segment compression C_x, N; negative when it acts in the opposite strut.
     pub compression_n: R,
-    /// Step of band tension dT, N.
+    /// Step of band tension dT, or pull of a chain (KC-2), N.
     pub step_n: R,
     /// Tension that the bands' own mass takes up, N (TE-8).
     pub ring_n: R,
@@ -125,7 +125,9 @@ fn holding_n<R: Real>(
 impl<R: Real> Tension<R> {
     /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
     pub fn driving(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Self {
-        if belt.formulation.by_statics() {
+        if belt.chain.is_some() {
+            Tension::of_chain(belt, at, load)
+        } else if belt.formulation.by_statics() {
             Tension::one_force(belt, at, load)
         } else {
             Tension::new(belt, at, load, at.direction)
@@ -190,11 +192,15 @@ impl<R: Real> Tension<R> {
         }
     }
 
-    /// Force of the primary that holds the ratio under an output torque, Nm (TE-9), N; in the printed forms, and by a table of thrust ratios, its
+    /// Force of the primary that holds the ratio under an output torque, Nm (TE-9, KC-2), N; in the printed forms, and by a table of thrust ratios, its
     /// clamping force.
     pub fn holding_n(&self, belt: &Belt<R>, at: &BeltAtRatio<R>, output_nm: R, mu_segment: R) -> R {
         if !belt.formulation.by_statics() || belt.thrust_ratio.is_some() {
             return self.primary_clamp_n;
+        }
+        if belt.chain.is_some() {
+            let holds_n = self.primary_shoulder_n / belt.tan_wedge - self.primary_clamp_n; // KC-2
+            return holds_n.max(0.0);
         }
         let clamps = (self.secondary_clamp_n, self.primary_clamp_n);
         let compression_n = output_nm * at.prepared.inv_secondary_radius;
