@@ -452,7 +452,10 @@ fn quantiles_of_most(of: &[f64], draws: u64) -> Option<[f64; 3]> {
     let failed = draws as f64 - of.len() as f64;
     let summary = Summary::new(of, Confidence::default());
     let is_known = !of.is_empty() && failed <= FAILED_SHARES[1] * draws as f64;
-    is_known.then(|| [0.05, 0.5, 0.95].map(|p| summary.quantile(p)))
+    let quantiles = [0.05, 0.5, 0.95].map(|p| summary.quantile(p));
+    // A drive without way has none.
+    let is_finite = quantiles.iter().all(|x| x.is_finite());
+    (is_known && is_finite).then_some(quantiles)
 }
 
 /// A car by itself over all draws.

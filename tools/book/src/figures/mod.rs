@@ -42,6 +42,7 @@ pub const PAGES: [Page; 26] = [
     page(
         "geometry",
         &[
+            "transmission.cvt.belt.kind",
             "transmission.cvt.belt.length_m",
             "transmission.cvt.ratio.low",
             "transmission.cvt.ratio.high",

@@ -78,6 +78,7 @@ fn index(source: &Path) -> Result<String, String> {
     for stem in PAGES.iter().map(|page| page.stem).chain([
         "accelerate",
         "attribution",
+        "chain",
         "cold",
         "optimum",
         "cycles",
