@@ -27,10 +27,12 @@ pub(super) fn strip(
     match interval {
         None => format!("{subject} uses {compared}; no range is claimed"),
         Some(ends @ [low, high]) if low < 0.0 && high > 0.0 => {
-            format!(
-                "{subject} uses {compared}; even the sign is open: {}",
-                level(ends)
-            )
+            let [least, most] = ends.map(|end| more_or_less(end, decimals(ends)));
+            let nominal = more_or_less(percent, decimals(ends));
+            match [&least, &most].iter().any(|of| *of == "as much") {
+                true => format!("{subject} uses {compared}; {} are possible", level(ends)),
+                false => format!("{subject} uses between {least} and {most} than {baseline}; {nominal} with the values of its file"),
+            }
         }
         Some(ends) => {
             let among = match is_by_cars {
