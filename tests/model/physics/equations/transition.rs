@@ -138,6 +138,9 @@ fn val_shift_of_the_shipped_box() {
         (1.3, 50.0, 40e3),
         (1.2, 50.0, 35e3),
         (1.9, 30.0, 27e3),
+        // Kick-down that suffices within the step.
+        (1.95, 20.0, 20e3),
+        (1.56, 40.0, 32e3),
         (2.4, 2.0, 2e3),
     ] {
         for pa in [8e5, 45e5, 90e5] {

@@ -153,8 +153,19 @@ pub(crate) struct Circuit<R: Real = f64> {
     pub pressure_pa: R,
     /// True where the pump's flow is what limits it.
     pub limited: R::Mask,
-    /// Flow that is left for the shift at that pressure, m3/s; where that is more than the shift takes, maybe what it takes.
+    /// Flow that is left for the shift at that pressure, m3/s; where that is more than the shift takes, maybe what it takes, but in a search.
     pub left_m3_s: R,
+}
+
+/// A shift as the pump's circuit sees it.
+#[derive(Clone, Copy)]
+pub(crate) struct ShiftNeed<R: Real = f64> {
+    /// Flow into the pulleys, m3/s.
+    pub flow_m3_s: R,
+    /// True where the clamp is fed before it (PU-7).
+    pub clamp_first: bool,
+    /// True while the largest flow that there is for it is searched (RC-5): what is left is worked out also where there is surely enough.
+    pub searched: bool,
 }
 
 /// How the secondary is clamped.
@@ -630,7 +641,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         set_pa: R,
         above_pa: Option<R>,
         pump: &TurningPump<R>,
-        shift: (R, bool),
+        shift: ShiftNeed<R>,
     ) -> Circuit<R> {
         let Some(above_pa) = above_pa else {
             return self.line_circuit(set_pa, pump, shift);
@@ -644,13 +655,10 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// The same for the pressure of the line.
-    fn line_circuit(
-        &self,
-        set_pa: R,
-        pump: &TurningPump<R>,
-        (shift_flow_m3_s, clamp_first): (R, bool),
-    ) -> Circuit<R> {
-        let short = !pump.surely_holds(set_pa, shift_flow_m3_s);
+    fn line_circuit(&self, set_pa: R, pump: &TurningPump<R>, shift: ShiftNeed<R>) -> Circuit<R> {
+        let shift_flow_m3_s = shift.flow_m3_s;
+        let searched = set_pa.splat_mask(shift.searched);
+        let short = searched | !pump.surely_holds(set_pa, shift_flow_m3_s);
         let mut circuit = Circuit {
             pressure_pa: set_pa,
             limited: short,
@@ -659,7 +667,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         if !short.any() {
             return circuit;
         }
-        let before_m3_s = match clamp_first {
+        let before_m3_s = match shift.clamp_first {
             true => set_pa.splat(0.0),
             false => shift_flow_m3_s,
         };

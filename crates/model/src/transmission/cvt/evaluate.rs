@@ -6,7 +6,7 @@
 
 use super::Shifting;
 use super::controller::ClampLaw;
-use super::driveline::{Clamp, Driveline, PartTorques};
+use super::driveline::{Clamp, Driveline, PartTorques, ShiftNeed};
 use super::variator::BeltLoad;
 use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
@@ -30,6 +30,8 @@ pub(super) struct Step<'a, P, R: Real = f64> {
     pub shift_flow_m3_s: R,
     /// True where the clamp is fed before the shift (PU-7), false for an imposed ratio.
     pub clamp_first: bool,
+    /// True while the largest flow that there is for the shift is searched (RC-5).
+    pub searched: bool,
     /// True where pump flow held the shift back.
     pub shift_held: R::Mask,
     /// State of the ratio control.
@@ -235,6 +237,15 @@ impl<M: Mask> Limit<M> {
 
 #[physics]
 impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
+    /// The shift as the pump's circuit sees it.
+    pub(super) fn shift_need(&self) -> ShiftNeed<R> {
+        ShiftNeed {
+            flow_m3_s: self.shift_flow_m3_s,
+            clamp_first: self.clamp_first,
+            searched: self.searched,
+        }
+    }
+
     /// Primary speed at a slip, rad/s (CV-1).
     pub(super) fn primary_rad_s(&self, slip: R) -> R {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
@@ -398,7 +409,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             },
             chain.secondary_rad_s,
         );
-        let shift = (self.shift_flow_m3_s, self.clamp_first);
+        let shift = self.shift_need();
         let line_above_pa = cvt.line_above_pa(g.pressure_pa, primary_pa);
         let circuit = line.circuit(set_pa, line_above_pa, &next_pump, shift);
         point.guess = Guess {

@@ -330,6 +330,9 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
         )),
         shift_flow_m3_s: shift.flow_m3_s,
         clamp_first: !matches!(before.2, Some(hold) if !hold.paced), // PU-7
+        searched: (asked.most_flow_m3_s.splat(f64::INFINITY))
+            .gt(asked.most_flow_m3_s)
+            .any(),
         shift_held: shift.held,
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, sump_k.splat(0.0)),

@@ -73,7 +73,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
         let signals = line.signals(guess, w);
         let set_pa;
         (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
-        let shift = (step.shift_flow_m3_s, step.clamp_first);
+        let shift = step.shift_need();
         let primary_pa = idle_primary_pa(step, &load, set_pa);
         let line_above_pa = cvt.line_above_pa(set_pa, primary_pa);
         let circuit = line.circuit(set_pa, line_above_pa, &shaft.pump, shift);
