@@ -138,6 +138,9 @@ fn val_shift_of_the_shipped_box() {
         (1.3, 50.0, 40e3),
         (1.2, 50.0, 35e3),
         (1.9, 30.0, 27e3),
+        // Kick-down that suffices within the step.
+        (1.95, 20.0, 20e3),
+        (1.56, 40.0, 32e3),
         (2.4, 2.0, 2e3),
     ] {
         for pa in [8e5, 45e5, 90e5] {
@@ -450,8 +453,8 @@ fn evaluations_of_the_solve() {
     let loaded: &[&str] = &["road_load.payload_kg=900"];
     let frozen = [
         (CARS[0], &[][..], "ece15_eudc", -10.0, 2832, 8),
-        (CARS[0], &[], "ftp75", 25.0, 5814, 10),
-        (CARS[0], &[], "hill", 60.0, 394, 7),
+        (CARS[0], &[], "ftp75", 25.0, 5810, 10),
+        (CARS[0], &[], "hill", 60.0, 396, 7),
         (CARS[0], loaded, "us06", 25.0, 2598, 77),
         (CARS[1], &[], "hill", 20.0, 208, 1),
     ];

@@ -89,6 +89,7 @@ fn index(source: &Path) -> Result<String, String> {
         "physics_checks",
         "rigs",
         "start_stop",
+        "steps",
         "studies",
         "torque_converter",
     ]) {
