@@ -67,6 +67,17 @@ fn own_kg(car: &Car, task: &Task) -> f64 {
     rows.map(|row| row.fuel_kg_s * row.dt_s).sum()
 }
 
+/// Controls with the ratio, and that at the end of the step, lower by a share.
+fn lower(hold: &Hold, share: f64, car: &Car) -> Hold {
+    let control = &cvt(car).unwrap().ratio;
+    let of = |ratio: f64| (ratio * (1.0 + share)).clamp(control.high, control.low);
+    Hold {
+        ratio: of(hold.ratio),
+        end: hold.end.map(of),
+        ..*hold
+    }
+}
+
 fn least(task: &Task) -> Bound {
     bound(task).unwrap_or_else(|why| panic!("{why:?}"))
 }
@@ -103,8 +114,7 @@ fn bound_is_below_every_car_that_drives() {
                 } else {
                     0.0
                 };
-                let ratio = (hold.ratio * (1.0 + more)).min(cvt(&own).unwrap().ratio.low);
-                drive.step_held(step, &Hold { ratio, ..*hold }).0
+                drive.step_held(step, &lower(hold, more, &own)).0
             });
         let kg: f64 = rows.map(|row| row.fuel_kg_s * row.dt_s).sum();
         assert!(kg > found.least_kg(), "{size}: {kg}");
@@ -238,7 +248,7 @@ fn a_coarse_grid_with_short_steps_is_no_limit() {
     }
 }
 
-/// The best line is within 0.3 % of the bound on ECE15+EUDC, keeps the minimum speed, and burns less than the unchanged car.
+/// The best line saves nearly all that the best control does on ECE15+EUDC, keeps the minimum speed, and is the best one near it.
 #[test]
 fn the_line_is_near_the_bound() {
     let own = car(&[], 25.0);
@@ -249,14 +259,37 @@ fn the_line_is_near_the_bound() {
     };
     let found = least(&problem);
     let fit = fit_line(&problem, &found);
-    assert!(fit.fuel_kg >= found.least_kg());
+    // The least of all paths is no more than the best one as driven: what brakes give an engine that they pull up (SI-5) is no heat of the engine.
     assert!(
-        fit.fuel_kg < 1.003 * found.least_kg(),
+        found.fuel_kg <= found.driven_kg,
         "{} {}",
-        fit.fuel_kg,
-        found.least_kg()
+        found.fuel_kg,
+        found.driven_kg
     );
-    assert!(fit.fuel_kg < own_kg(&own, &problem));
+    let (least_kg, own_kg) = (found.least_kg(), own_kg(&own, &problem));
+    assert!(fit.fuel_kg >= least_kg && fit.fuel_kg < own_kg);
+    // Near: nine tenths of what the best control saves are to be had without looking ahead; the line before the search has two thirds of it.
+    let saved = |kg: f64| (own_kg - kg) / (own_kg - least_kg);
+    assert!(saved(fit.fuel_kg) > 0.9, "{}", saved(fit.fuel_kg));
+    assert!(saved(fit.first_kg) < 0.9, "{}", saved(fit.first_kg));
+    // DP-12: no node burns less elsewhere.
+    let count = fit.line.drive.len();
+    for k in 0..count + fit.line.overrun.len() {
+        for by in [-80.0, -40.0, 40.0, 80.0] {
+            let mut line = fit.line.clone();
+            match k < count {
+                true => line.drive[k].1 += by,
+                false => line.overrun[k - count].1 += by,
+            }
+            let nodes = line.drive.iter().chain(&line.overrun);
+            let slow = nodes.map(|(_, rpm)| *rpm).any(|rpm| rpm < 1100.0);
+            let falls = |pair: &[(f64, f64)]| pair[1].1 < 0.96 * pair[0].1;
+            if !slow && !line.drive.windows(2).any(falls) {
+                let kg = self::own_kg(&line.on(&own), &problem);
+                assert!(kg > (1.0 - 1e-6) * fit.fuel_kg, "{k} {by}: {kg}");
+            }
+        }
+    }
     assert!(fit.slowest_rad_s > 0.99 * problem.limits.least_rad_s);
     let rows = fit.line.drive.iter().chain(&fit.line.overrun);
     let below = rows.filter(|(_, rpm)| *rpm < 1100.0).count();
@@ -367,7 +400,6 @@ fn random_paths_of_a_converter_car_are_above_its_bound() {
     let (own, steps) = converter(&[], 25.0, "ece15");
     let problem = task(&own, &steps, 60.0);
     let found = least(&problem);
-    let ratio = &cvt(&own).unwrap().ratio;
     let mut seed = 12_345_u64;
     for number in 0..60 {
         let size = 0.005 * f64::from(1 + number % 20);
@@ -379,8 +411,7 @@ fn random_paths_of_a_converter_car_are_above_its_bound() {
                 let any = (seed >> 33) as f64 / f64::from(1_u32 << 31);
                 more = if found.chosen[k] { size * any } else { 0.0 };
             }
-            let ratio = (hold.ratio * (1.0 + more)).clamp(ratio.high, ratio.low);
-            let row = drive.step_held(step, &Hold { ratio, ..*hold }).0;
+            let row = drive.step_held(step, &lower(hold, more, &own)).0;
             kg += row.fuel_kg_s * row.dt_s;
         }
         assert!(kg > found.least_kg(), "{number}: {kg} {}", found.least_kg());
@@ -496,4 +527,67 @@ fn threads_change_no_bit() {
         (found.fuel_kg.to_bits(), found.driven_kg.to_bits())
     };
     assert_eq!(on(1), on(4));
+}
+
+/// Truth: RC-12. A drive whose ratios are held, those at the ends of its steps too, is that drive; with a level engine speed within each step, as
+/// the program has its paths (DP-2), it is nearly that drive, and nearer than with one ratio for each step.
+#[test]
+fn a_drive_with_its_ratios_held_is_that_drive() {
+    let own = car(&[], 25.0);
+    for rpm in [1100.0, 1250.0, 1700.0] {
+        for dt_s in [1.0, 0.5, 0.25] {
+            let steps = steps(&embedded("ece15_eudc").unwrap(), dt_s);
+            let problem = task(&own, &steps, 25.0);
+            let line = Line {
+                drive: vec![(0.0, rpm), (15.0, rpm), (100.0, 6000.0)],
+                overrun: vec![(0.0, rpm.max(1400.0))],
+            };
+            let on = line.on(&own);
+            let start = |car| Drive::along(car, problem.trace, problem.start);
+            let mut drives = [start(&on), start(&own), start(&own), start(&own)];
+            let mut kg = [0.0; 4];
+            for step in problem.steps {
+                let row = drives[0].step(step).0;
+                let after = drives[0].state().transmission.unwrap().cvt.unwrap();
+                let control = &problem.cvt.ratio;
+                let level = match row.flags.contains(Flags::CLUTCH_SLIPPING) {
+                    true => row.belt_ratio,
+                    false => (row.belt_ratio * row.speed_m_s / step.end_speed_m_s)
+                        .min(control.low)
+                        .max(control.high),
+                };
+                kg[0] += row.fuel_kg_s * row.dt_s;
+                let ends = [Some(after.shifting.ratio), Some(level), None];
+                for (k, end) in ends.into_iter().enumerate() {
+                    let hold = Hold {
+                        ratio: row.belt_ratio,
+                        clamp: None,
+                        end,
+                        paced: false,
+                    };
+                    let row = drives[k + 1].step_held(step, &hold).0;
+                    kg[k + 1] += row.fuel_kg_s * row.dt_s;
+                }
+            }
+            let [same, level, one] = [1, 2, 3].map(|k: usize| (kg[k] / kg[0] - 1.0).abs());
+            assert!(same < 1e-7, "{rpm} {dt_s}: {same}");
+            assert!(level < 0.5 * one, "{rpm} {dt_s}: {level} {one}");
+        }
+    }
+}
+
+/// Truth: the clamp law, which keeps slip at 2 %. The shifts of the best path are within the rates at both ends of a step, so that the pump feeds the
+/// clamp as well; an imposed shift that is faster takes its flow (PU-7) and the belt slips by a fifth.
+#[test]
+fn the_belt_holds_on_the_best_path() {
+    let own = car(&["transmission.cvt.clamp=slip_limited"], 25.0);
+    let steps = steps(&embedded("ece15_eudc").unwrap(), 0.25);
+    let problem = Task {
+        grid: 97,
+        ..task(&own, &steps, 25.0)
+    };
+    let found = least(&problem);
+    for row in &found.rows {
+        assert!(row.slip.abs() < 0.0201, "{row:?}");
+    }
 }

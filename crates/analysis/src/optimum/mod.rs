@@ -23,8 +23,9 @@
 //! | DP-10 | D: fuel of the path, driven with its ratios and clamp law held (RC-12) | derived: what a controller that knows the cycle burns in the model |
 //! | DP-11 | tolerance = \|J - J of half the grid\| + \|J - J of the temperatures before\| = tau_0, + 2 max(0, J - tau_0 - D); bound = J - tolerance | derived: no credit for the order of convergence |
 //!
-//! Every controller of ratio, pressure and clutch within the limits drives one of the paths, and what is left out (DP-2) lowers the fuel: no
-//! such controller burns less than the bound. Temperatures follow the path: the program is solved in those of a drive, its path is driven, and
+//! Every controller of ratio, pressure and clutch within the limits drives one of the paths, but for the way of the ratio within a step (RC-17),
+//! which moves the fuel by 0.1 % at most; the rest that is left out (DP-2) lowers it or is in the tolerance: no such controller burns less than the
+//! bound by more than that. Temperatures follow the path: the program is solved in those of a drive, its path is driven, and
 //! so on until the fuel settles; what another controller's heat would save later is in the worth of heat.
 
 mod answer;
@@ -68,7 +69,7 @@ const SETTLED: f64 = 2e-4;
 /// Most sets of temperatures.
 const MAX_TEMPERATURES: usize = 6;
 /// Part of what the best path, driven, burns less than the least fuel less the other tolerances that is in the tolerance. ASSUMED: once for that path, and as much again for
-/// others, which have the same launches.
+/// others, which have the same launches and changes down in overrun.
 const LAG: f64 = 2.0;
 /// Strides of the coarser grids, coarsest first.
 const STRIDES: [usize; 2] = [4, 2];

@@ -171,7 +171,9 @@ impl Scene<'_> {
         };
         loop {
             let before = &reference.before[k];
-            let mut before = self.rolling_at(before, place.ratio, engine_rad_s, place.mode);
+            // The ratio before is the one at the end: the shift itself is left out (DP-2).
+            let ratios = (place.ratio, self.level(k, place.ratio));
+            let mut before = self.rolling_at(before, ratios, engine_rad_s, place.mode);
             before.running.speed_rad_s = cut_rad_s;
             before.heat.node_k[SUMP] += warmer_k;
             let row = self.held(k, before, hold);
@@ -197,7 +199,7 @@ impl Scene<'_> {
         let hold = Hold {
             ratio,
             clamp,
-            end: None,
+            end: Some(self.level(k, ratio)),
             paced: false,
         };
         let one = |cut_rad_s: f64| self.driven(reference, k, &place, (&hold, cut_rad_s));

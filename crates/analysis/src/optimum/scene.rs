@@ -35,6 +35,8 @@ pub struct Scene<'a> {
     speed_m_s: Vec<f64>,
     /// Speed of the secondary in each step, rad/s.
     pub secondary_rad_s: Vec<f64>,
+    /// Mean speed of each step over that at its end; none for a car that stops.
+    over_end: Vec<Option<f64>>,
     /// Control of the clamping pressure.
     pub clamp: Clamp,
     /// By how much the sump may be warmer than that of the reference where its temperature locks the coupling, K (DP-14).
@@ -49,7 +51,13 @@ impl<'a> Scene<'a> {
             let wheel = car.road_load.wheel(step, 0.0);
             (wheel.speed_m_s, cvt.final_drive.ratio * wheel.wheel_rad_s)
         });
-        let (speed_m_s, secondary_rad_s) = wheels.unzip();
+        let (speed_m_s, secondary_rad_s): (Vec<f64>, Vec<f64>) = wheels.unzip();
+        let each = task.steps.iter().zip(&speed_m_s);
+        let over_end = each.map(|(step, mean)| {
+            let end = step.end_speed_m_s;
+            (end > 0.0).then(|| mean / end)
+        });
+        let over_end = over_end.collect();
         Scene {
             car,
             cvt,
@@ -57,6 +65,7 @@ impl<'a> Scene<'a> {
             trace: task.trace,
             speed_m_s,
             secondary_rad_s,
+            over_end,
             clamp: task.clamp,
             warmer_k: 0.0,
         }
@@ -86,6 +95,7 @@ impl<'a> Scene<'a> {
             warmer_k: WARMER_K,
             speed_m_s: self.speed_m_s.clone(),
             secondary_rad_s: self.secondary_rad_s.clone(),
+            over_end: self.over_end.clone(),
             ..*self
         })
     }
@@ -127,9 +137,10 @@ impl<'a> Scene<'a> {
         limits: &Limits,
     ) -> Hold {
         let kept = state.transmission.as_ref();
-        let Some((coupled, before)) = kept.and_then(|kept| {
-            let belt = kept.cvt.as_ref().map(|cvt| cvt.shifting.ratio);
-            Some((kept.driveline.coupled, belt?))
+        let Some((coupled, (before, end_before))) = kept.and_then(|kept| {
+            let cvt = kept.cvt.as_ref()?;
+            let ratios = (cvt.belt.geometry.ratio, cvt.shifting.ratio);
+            Some((kept.driveline.coupled, ratios))
         }) else {
             return hold;
         };
@@ -142,7 +153,24 @@ impl<'a> Scene<'a> {
             (_, true) => hold.ratio.clamp(up.exp(), down.exp()),
             _ => hold.ratio.min(down.exp()).max(before),
         };
-        Hold { ratio, ..hold }
+        // Nor an end beyond them: the flow of a faster shift, which is imposed, would be missing for the clamp.
+        let (up, down) = self.reach(k, end_before.ln(), limits);
+        let end = |_| self.level(k, ratio).clamp(up.exp(), down.exp());
+        Hold {
+            ratio,
+            end: hold.end.map(end),
+            ..hold
+        }
+    }
+
+    /// Ratio at the end of a step at which the engine is as fast then as in the mean of the step (DP-2): what a controller that holds a speed has, while
+    /// one ratio for the whole step brings fuel back too early where the car slows down (EN-11).
+    pub fn level(&self, k: usize, ratio: f64) -> f64 {
+        let control = &self.cvt.ratio;
+        match self.over_end[k] {
+            Some(over) => (ratio * over).clamp(control.high, control.low),
+            None => control.low,
+        }
     }
 
     /// Logarithms of the ratio between which a step can end that begins at `x` (RC-4).
@@ -180,9 +208,15 @@ impl<'a> Scene<'a> {
         engine
     }
 
-    /// A state with another ratio, driven before at an engine speed with the coupling in a mode.
-    pub fn rolling_at(&self, state: &State, ratio: f64, engine_rad_s: f64, mode: Mode) -> State {
-        let mut state = self.in_ratio(state, ratio);
+    /// A state after a step in another ratio, with one at its end, at an engine speed with the coupling in a mode.
+    pub fn rolling_at(
+        &self,
+        state: &State,
+        ratios: (f64, f64),
+        engine_rad_s: f64,
+        mode: Mode,
+    ) -> State {
+        let mut state = self.in_ratio(state, ratios);
         if let Some(transmission) = &mut state.transmission {
             transmission.driveline.engine_rad_s = engine_rad_s;
             transmission.driveline.coupled = mode == Mode::Locked;
@@ -193,12 +227,12 @@ impl<'a> Scene<'a> {
         state
     }
 
-    /// A state with another ratio.
-    pub fn in_ratio(&self, state: &State, ratio: f64) -> State {
+    /// A state after a step in another ratio, with one at its end.
+    pub fn in_ratio(&self, state: &State, (ratio, end): (f64, f64)) -> State {
         let mut state = *state;
         if let Some(cvt) = state.transmission.as_mut().and_then(|t| t.cvt.as_mut()) {
             cvt.belt = BeltAtRatio::new(&self.cvt.belt, ratio);
-            cvt.shifting.ratio = ratio;
+            cvt.shifting.ratio = end;
         }
         state
     }
@@ -209,10 +243,11 @@ impl<'a> Scene<'a> {
         let (w, step) = (row.engine_speed_rad_s, &self.steps[k]);
         if w > 0.0 {
             let engine = self.engine(before, step, before.running.speed_rad_s);
-            let crank_w = row.engine_torque_nm * w + row.accessories_w + row.kinetic_w;
-            let burn = engine.burn(w, crank_w / w);
-            heat_w[COOLANT] += burn.to_coolant_w;
-            heat_w[ENGINE_OIL] += burn.to_oil_w;
+            // What the engine gave: not all of the rotating energy is burnt for, the brakes may have had it (SI-5).
+            let crank_w = row.fuel_power_w - row.exhaust_w - row.engine_heat_w;
+            let to_oil_w = engine.burn(w, crank_w / w).to_oil_w;
+            heat_w[COOLANT] += row.engine_heat_w - to_oil_w;
+            heat_w[ENGINE_OIL] += to_oil_w;
         }
         heat_w
     }

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | DP-2 | c_t(x, u) = m_f(w(u), T) dt - sum of worth_i P_i dt; T = T_fly(u) + T_acc + J (w(u)2 - w(x)2)/(2 w(u) dt) within SI-2, at most (1 - r) full load; w(u), T_fly(u), P_i by the step held at u | derived: the drive of a step from its ratio before and after; shift flow and PC-5's share of shifting left out, which only lowers it |
+//! | DP-2 | c_t(x, u) = m_f(w(u), T) dt - sum of worth_i P_i dt; T = T_fly(u) + T_acc + J (w(u)2 - w(x)2)/(2 w(u) dt) within SI-2 and SI-5, at most (1 - r) full load; w(u), T_fly(u), P_i by the step held at u, with a ratio at its end at which the engine is as fast then as in its mean | derived: the drive of a step from its ratio before and after; shift flow and PC-5's share of shifting left out, which only lowers it; energy that lags by SI-5 is burnt at once, which is in the tolerance (DP-11); other ways within a step (RC-17) burn up to 0.1 % less |
 //! | DP-5 | with a clutch, a step in which low gives less than the least speed, or before the clutch has locked, goes to low as fast as RC-4 allows; with a torque converter such a step has no limit of speed | derived: RC-6, LC-5; no ratio holds the engine there |
 
 use cvtcycle_model::drive::State;
@@ -121,9 +121,11 @@ impl<'a> Problem<'a> {
             (Some(nodes), Some(place)) => {
                 let node = Node::at_place(nodes, place);
                 let scene = self.scene;
-                scene.rolling_at(before, x.exp(), node.end_rad_s, node.mode)
+                let ratio = x.exp();
+                let end = scene.level(k - 1, ratio);
+                scene.rolling_at(before, (ratio, end), node.end_rad_s, node.mode)
             }
-            _ => self.scene.in_ratio(before, x.exp()),
+            _ => self.scene.in_ratio(before, (x.exp(), x.exp())),
         }
     }
 
@@ -175,6 +177,9 @@ impl<'a> Problem<'a> {
         let hold = |k: usize| {
             let nodes = &self.stages[k].nodes;
             let mut hold = self.scene.law_held(path.x[k].exp());
+            if !nodes.is_empty() {
+                hold.end = Some(self.scene.level(k, hold.ratio));
+            }
             if let (Some(law), false) = (&mut hold.clamp, nodes.is_empty()) {
                 *law = free_law(Node::at_place(nodes, path.places[k]).safety);
             }
