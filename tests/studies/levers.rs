@@ -580,6 +580,12 @@ fn a_median_by_form_is_that_of_its_values() {
     if let Some((plan, ..)) = &mut asked.draws {
         *plan = two_forms([3.0, 1.0]);
     }
+    // Values that are given are certain: no range of the car's own is drawn.
+    let keys = setup::load(CVT, &Options::default()).unwrap().keys;
+    let ranged = keys.iter().filter(|info| info.range.is_some());
+    let given = ranged.map(|info| format!("{}={}", info.key, info.value).parse().unwrap());
+    asked.set_all = given.collect();
+    assert!(!asked.set_all.is_empty());
     let row = run(&asked, 2).row("offset").clone();
     let counts: Vec<usize> = row.by_form.iter().map(|of| of.n).collect();
     assert_eq!(counts, [6, 2]);
