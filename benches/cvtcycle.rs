@@ -134,6 +134,7 @@ fn driveline_step(bencher: Bencher, name: &str) {
         dt_s: 1.0,
         engine_off: false,
         neutral_share: 0.0,
+        kinetic_j: 0.5 * car.engine.inertia_kg_m2 * 200.0 * 200.0,
     };
     let mut state: TransmissionState = car.transmission.start(&around(0));
     let mut k = 0;

@@ -166,7 +166,10 @@ fn the_table_has_the_fuel_of_every_car() {
     let over = &found["comparison"][1];
     let percent = over["phases_percent"]["ece15"].as_f64().unwrap();
     let part = format!("over mondeo_20_5mt: ece15 {percent:+.1} %");
-    assert!(percent < 0.0 && text.contains(&part), "{part} is not in\n{text}");
+    assert!(
+        percent < 0.0 && text.contains(&part),
+        "{part} is not in\n{text}"
+    );
     assert!(
         text.lines().all(|line| line.chars().count() <= 100),
         "{text}"

@@ -102,7 +102,7 @@ fn main() {
         let driven: Vec<Pair> = cycles
             .map(|name| Pair::drive(&car, &embedded(name).unwrap(), name))
             .collect();
-        if words.first().is_some() {
+        if !words.is_empty() {
             for pair in &driven {
                 let errors = [0, 1, 2, 3].map(|step| format!("{:+.3}", pair.error_percent(step)));
                 let seconds = pair

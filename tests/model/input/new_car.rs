@@ -446,9 +446,13 @@ fn no_more_power_above_the_speed_of_rated_power() {
     ];
     let setup = cvt(&numbers);
     let points = setup.engine().full_load.points();
-    let (most_kw, at_rad_s) = points
-        .map(|(rad_s, nm)| (rad_s * nm / 1e3, rad_s))
-        .fold((0.0, 0.0), |most, here| if here.0 > most.0 { here } else { most });
+    let (most_kw, at_rad_s) =
+        points
+            .map(|(rad_s, nm)| (rad_s * nm / 1e3, rad_s))
+            .fold(
+                (0.0, 0.0),
+                |most, here| if here.0 > most.0 { here } else { most },
+            );
     // Torque is written to 0.1 Nm.
     assert!((most_kw - 54.0).abs() < 0.05e-3 * at_rad_s, "{most_kw}");
     assert!((at_rad_s - rad_s(4800.0)).abs() < 1e-9, "{at_rad_s}");

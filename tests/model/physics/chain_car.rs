@@ -103,10 +103,8 @@ fn components_of_a_chain() {
             loss_j[component]
         );
     }
-    assert_eq!(
-        [loss_j[Component::BeltBand], loss_j[Component::BeltFilm]],
-        [0.0; 2]
-    );
+    let of_belts = [loss_j[Component::BeltBand], loss_j[Component::BeltFilm]];
+    assert!(of_belts.iter().all(|loss| loss.abs() <= 0.0), "{of_belts:?}");
     let belt = car("rover_216_cvt", &[]);
     let own = belt.transmission().components();
     assert!(own.contains(&Component::BeltBand) && !own.contains(&Component::ChainJoint));

@@ -31,7 +31,9 @@ pub(super) fn strip(
             let nominal = more_or_less(percent, decimals(ends));
             match [&least, &most].iter().any(|of| *of == "as much") {
                 true => format!("{subject} uses {compared}; {} are possible", level(ends)),
-                false => format!("{subject} uses between {least} and {most} than {baseline}; {nominal} with the values of its file"),
+                false => format!(
+                    "{subject} uses between {least} and {most} than {baseline}; {nominal} with the values of its file"
+                ),
             }
         }
         Some(ends) => {

@@ -42,6 +42,9 @@ pub struct Look {
     pub dotted: bool,
 }
 
+/// Position of a range with its lower and its upper end.
+pub type Level = (f64, f64, f64);
+
 /// One panel.
 #[derive(Clone, Debug, Default)]
 pub struct LinePanel {
@@ -58,7 +61,7 @@ pub struct LinePanel {
     /// Look and points of each series, with a gap where a value is not finite; stacked ones share their horizontal values.
     pub series: Vec<(Look, Points)>,
     /// Look, and position with lower and upper end, of ranges drawn below the lines.
-    pub bands: Vec<(Look, Vec<(f64, f64, f64)>)>,
+    pub bands: Vec<(Look, Vec<Level>)>,
     /// Published numbers next to the series.
     pub printed: Vec<PrintedMark>,
 }
