@@ -104,7 +104,10 @@ fn components_of_a_chain() {
         );
     }
     let of_belts = [loss_j[Component::BeltBand], loss_j[Component::BeltFilm]];
-    assert!(of_belts.iter().all(|loss| loss.abs() <= 0.0), "{of_belts:?}");
+    assert!(
+        of_belts.iter().all(|loss| loss.abs() <= 0.0),
+        "{of_belts:?}"
+    );
     let belt = car("rover_216_cvt", &[]);
     let own = belt.transmission().components();
     assert!(own.contains(&Component::BeltBand) && !own.contains(&Component::ChainJoint));
