@@ -140,7 +140,7 @@ pub(super) fn frame(svg: &mut Svg, panel: &Panel) {
 }
 
 /// Room for the labels of the vertical axis, its turned title and the gap to the plot, pixels.
-pub(super) fn beside(panel: &Panel) -> f64 {
+pub(super) fn axis_width(panel: &Panel) -> f64 {
     let labels = panel.y.ticks.iter();
     let widest = labels.map(|(_, text)| text_width(text, TICK_TEXT));
     widest.fold(0.0, f64::max) + TITLE_AND_GAP
@@ -153,7 +153,7 @@ fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Err
         0
     };
     let rect = panel.rect;
-    let left = LEFT.max(beside(panel)).min(rect.left);
+    let left = LEFT.max(axis_width(panel)).min(rect.left);
     let corner = (units(rect.left - left) as i32, units(rect.top) as i32);
     let size = (
         units(rect.right) as i32 - corner.0,

@@ -2,7 +2,7 @@
 //! in the legend where there is no room at their ends, texts wrapped. Shapes stay where the axes put them.
 
 use super::axis::{Axis, range};
-use super::backend::beside;
+use super::backend::axis_width;
 use super::chart::{Block, Chart, Content, Entry};
 use super::panel::{BELOW, Item, PAD, Panel, Shape, row_middle};
 use super::place::{End, Label, Place, at};
@@ -153,7 +153,7 @@ fn plot(panel: &Panel, top: f64) -> (Panel, Vec<Entry>) {
     };
     let tall = panel.rect.height().min(TALL);
     // Labels as long as 2.0e289 keep off the title of their axis.
-    let left = LEFT.max(beside(panel));
+    let left = LEFT.max(axis_width(panel));
     own.rect = Rect::new(left, top, WIDTH - left - beyond, tall);
     own.x = thinned(&panel.x, own.rect.width(), (left, beyond));
     let scale = own.rect.width() / panel.rect.width();
