@@ -42,7 +42,9 @@ const badTexts = () => {
   const bad = [];
   for (const figure of document.querySelectorAll("figure.figure")) {
     if (!figure.checkVisibility()) continue;
-    const svg = figure.querySelector(".drawing svg");
+    // A figure may have a drawing for a narrow screen next to the wide one: the one that is shown.
+    const svg = [...figure.querySelectorAll(".drawing svg")].find((one) => one.checkVisibility());
+    if (!svg) { bad.push(`${figure.id}: no drawing`); continue; }
     const frame = svg.getBoundingClientRect();
     const scale = frame.width / svg.viewBox.baseVal.width;
     // The box has the line height of the font, with empty space of half the letter height on either side.
