@@ -34,7 +34,7 @@ fn the_strip_states_if_the_sign_is_certain() {
         ),
         (
             Some([-1.2, 4.0, 9.1]),
-            "own uses between 1 % less and 9 % more than five &lt;gears&gt;; 6 % more with the values of its file",
+            "own uses between 1 % less and 9 % more than five &lt;gears&gt;; 6 % more with nominal values",
         ),
         (
             None,

@@ -364,7 +364,7 @@ fn risk(row: &LeverRow, duration_s: f64) -> Option<String> {
     let falls = falls.map(|own| {
         let ratio = |x: f64| Quantity::Ratio.text(Some(x));
         format!(
-            "lowest clamping safety of all runs {}, of the car as it is {} (below 1 the belt slips)",
+            "lowest clamping safety over all runs: {} with this change, {} without it (below 1 the belt slips)",
             ratio(own.worst),
             ratio(own.reference_worst)
         )

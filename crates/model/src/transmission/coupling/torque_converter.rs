@@ -478,12 +478,12 @@ keys! {
     /// Keys of `[transmission.cvt.launch.torque_converter.lockup]`.
     LOCK_UP: LockUpKeys = "lockup" [] {
         enabled: flag(true), "whether the lock-up clutch ever closes", ["TC-7"];
-        from_kmh: or(15.0, number(0.0, 200.0)), "road speed above which it closes", ["TC-7"];
-        until_kmh: or(10.0, number(0.0, 200.0)), "road speed below which it opens", ["TC-7"];
-        from_degc: or(20.0, number(-60.0, 120.0)), "temperature of the sump above which it closes", ["TC-7"];
-        open_rpm: or(900.0, number(0.0, 3000.0)), "turbine speed below which it opens, idle speed at least", ["TC-7"];
-        slip_rpm: or(0.0, number(0.0, 300.0)), "slip of a lock-up clutch that does not close in full", ["TC-8"];
-        slip_until_degc: or(120.0, number(-60.0, 150.0)), "temperature of the sump up to which it slips", ["TC-8"];
+        from_kmh: or(15.0, number(0.0, 200.0)), "road speed above which the lock-up clutch closes", ["TC-7"];
+        until_kmh: or(10.0, number(0.0, 200.0)), "road speed below which the lock-up clutch opens", ["TC-7"];
+        from_degc: or(20.0, number(-60.0, 120.0)), "temperature of the sump above which the lock-up clutch closes", ["TC-7"];
+        open_rpm: or(900.0, number(0.0, 3000.0)), "turbine speed below which the lock-up clutch opens, idle speed at least", ["TC-7"];
+        slip_rpm: or(0.0, number(0.0, 300.0)), "slip that a lock-up clutch keeps when closed", ["TC-8"];
+        slip_until_degc: or(120.0, number(-60.0, 150.0)), "temperature of the sump up to which the lock-up clutch slips", ["TC-8"];
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) fn strip(
             match [&least, &most].iter().any(|of| *of == "as much") {
                 true => format!("{subject} uses {compared}; {} are possible", level(ends)),
                 false => format!(
-                    "{subject} uses between {least} and {most} than {baseline}; {nominal} with the values of its file"
+                    "{subject} uses between {least} and {most} than {baseline}; {nominal} with nominal values"
                 ),
             }
         }
