@@ -226,15 +226,20 @@ pub fn load(
         named_by,
         ..baseline
     };
-    // A change is compared with the car of the file, unless that is no whole car without it.
+    // A change is compared with the car of the file, unless that is no whole car without it. A baseline that names the same file is that car.
     let is_changed = car.lubricant.is_some() || !car.set.is_empty();
-    let is_wanted = baselines == Baselines::OfFile && !comparison.has_none();
+    let is_named = names.contains(&car.vehicle);
+    let is_wanted = is_named || (baselines == Baselines::OfFile && !comparison.has_none());
     let unchanged = (is_changed && is_wanted)
         .then(|| setup::load(&car.vehicle, &baseline).ok())
         .flatten()
         .filter(|before| setup.as_ref().is_some_and(|after| differs(before, after)));
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
     let has_unchanged = unchanged.is_some();
+    let names: Vec<String> = names
+        .into_iter()
+        .filter(|name| !(has_unchanged && *name == car.vehicle))
+        .collect();
     loaded.extend(unchanged.map(|mut setup| {
         setup.short += " as it is";
         (&car.vehicle, Some(setup), baseline.clone())

@@ -95,6 +95,10 @@ impl Compared {
         });
         let mut others: Vec<OtherCar> = unchanged.into_iter().collect();
         for name in base.baselines.as_ref().unwrap_or(&setup.baselines) {
+            // The subject's own file is the car unchanged.
+            if is_changed && *name == base.vehicle {
+                continue;
+            }
             others.push(baseline(name, (base, &options), &plain)?);
         }
         Ok(Compared {

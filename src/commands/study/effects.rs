@@ -4,7 +4,7 @@ use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
-use cvtcycle::study::answer::{Information, MinimumOver, OutputAnswer};
+use cvtcycle::study::answer::{GridMatrix, Information, MinimumOver, OutputAnswer};
 use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::statistics::{
     Confidence, Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado,
@@ -88,7 +88,45 @@ fn grid(output: &OutputAnswer) -> String {
         true => "",
         false => "; [what is known of the frictions, two standard deviations]",
     };
-    format!("{}  * least{scope}{ranges}\n", table.text())
+    let pairs = pairs(output, matrix);
+    format!("{}  * least{scope}{ranges}\n{pairs}", table.text())
+}
+
+/// Each choice less each other one, in each condition.
+fn pairs(output: &OutputAnswer, matrix: &GridMatrix) -> String {
+    let Some([conditions, _]) = matrix.conditions() else {
+        return String::new();
+    };
+    if matrix.pairs.len() > MATRIX[0] || conditions.len() > MATRIX[1] {
+        return "  pairs of choices in pairs.csv\n".to_owned();
+    }
+    let mut table = TextTable::new(&("l".to_owned() + &"r".repeat(conditions.len()))).indented();
+    let head = format!("A less B, {}", output.unit);
+    table.row([head].into_iter().chain(conditions.iter().cloned()));
+    let mut is_any_sure = false;
+    for pair in &matrix.pairs {
+        let cell = |(x, ends): (&Option<f64>, &Option<[f64; 2]>)| match ends {
+            Some(ends @ [low, high]) => {
+                let is_sure = ends[0] > 0.0 || ends[1] < 0.0;
+                let mark = if is_sure { "!" } else { "" };
+                let [x, low, high] = [*x, Some(*low), Some(*high)].map(|x| fixed(x, 3));
+                (is_sure, format!("{mark}{x} [{low}, {high}]"))
+            }
+            None => (false, fixed(*x, 3)),
+        };
+        let cells: Vec<(bool, String)> =
+            pair.differences.iter().zip(&pair.ends).map(cell).collect();
+        is_any_sure |= cells.iter().any(|(is_sure, _)| *is_sure);
+        let name = pair.choices.join(" less ");
+        let cells = cells.into_iter().map(|(_, text)| text);
+        table.row([name].into_iter().chain(cells));
+    }
+    let sure = match (matrix.ends.is_empty(), is_any_sure) {
+        (true, _) => "",
+        (false, true) => "  ! the frictions leave its sign certain\n",
+        (false, false) => "  the frictions leave every sign open\n",
+    };
+    format!("\n{}{sure}", table.text())
 }
 
 /// Every level of each factor, ordered by the width of the bar.

@@ -149,7 +149,16 @@ fn val_ftp75_is_weighted_by_bag() {
 
 #[test]
 fn the_table_has_the_fuel_of_every_car() {
-    let text = stdout(&run(&["run", "--ambient", "-10"]));
+    let words = [
+        "run",
+        "--ambient",
+        "-10",
+        "--baseline",
+        "rover_216_5mt",
+        "--baseline",
+        "mondeo_20_5mt",
+    ];
+    let text = stdout(&run(&words));
     for part in [
         "rover_216_cvt",
         "total",
@@ -162,7 +171,7 @@ fn the_table_has_the_fuel_of_every_car() {
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    let found = json(&["run", "--ambient", "-10", "--json"]);
+    let found = json(&[&words[..], &["--json"]].concat());
     let over = &found["comparison"][1];
     let percent = over["phases_percent"]["ece15"].as_f64().unwrap();
     let part = format!("over mondeo_20_5mt: ece15 {percent:+.1} %");

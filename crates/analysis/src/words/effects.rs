@@ -328,6 +328,7 @@ mod tests {
             least_of,
             least: least.to_vec(),
             ends: Vec::new(),
+            pairs: Vec::new(),
         }
     }
 

@@ -358,7 +358,7 @@ fn faults_of_recordings_have_a_remedy_each() {
     }
     let cycle = read_with(text.as_bytes(), "").unwrap();
     let own = cycle.recording.as_deref().unwrap();
-    assert_eq!((own.bounds.len(), own.left.is_some()), (1, true));
+    assert_eq!((own.bounds.len(), own.left.is_some()), (3, true));
     let right = |own: &crate::cycle::Interval| {
         (3.6 * own.start_speed_m_s - speeds[own.start_s as usize]).abs()
     };

@@ -29,6 +29,8 @@ const SLOW_RATE_S: f64 = 2.5;
 /// Half width by which fuel and difference are open besides what the strength of the smoothing leaves: per cent, and points. Twice the rms error of UDDS, HWFET,
 /// US06, NYCC and Artemis urban, rounded to whole km/h and mph at 10, 4, 2 and 1 Hz or with 0.05 m/s of noise, and smoothed.
 const LEFT: [f64; 2] = [1.0, 0.5];
+/// Least error of a recorded speed, m/s. ASSUMED: half of a whole km/h, in which cars say their speed; a tyre's wear changes 100 km/h by more.
+const ACCURACY_M_S: f64 = 0.5 / 3.6;
 /// Error of a speed up to which this holds, m/s: that of whole km/h.
 const FINE_M_S: f64 = 0.1;
 
@@ -109,7 +111,12 @@ pub(crate) fn treat(
     if own.samples.first_m_s.len() == own.samples.time_s.len() {
         own.bounds.push(own.first(resolution));
     }
-    let left = left(raster, resolution, own.bounds.is_empty());
+    let mut left = left(raster, resolution, own.bounds.is_empty());
+    if !is_exact && raster.is_some() {
+        own.moved(resolution);
+        // Noise below LG-4 and LG-2 is not seen, and moves the fuel by up to 1 %.
+        left = left.or(Some(LEFT));
+    }
     if let Some(step) = raster.filter(|step| *step > SLOW_RATE_S && !is_exact) {
         own.doubts.push(format!(
             "the rows are {} s apart: accelerations between them are not in the log",
@@ -145,6 +152,20 @@ fn left(raster: Option<f64>, resolution: Option<Resolution>, is_alone: bool) -> 
 }
 
 impl Treatment<'_> {
+    /// The speeds of the moving car lower and higher by what a recording leaves open (LG-6): a plateau may lie on a speed of a shift.
+    fn moved(&mut self, resolution: Option<Resolution>) {
+        let error_m_s = resolution.map_or(0.0, |own| own.error_m_s);
+        let by_m_s = (2.0 * error_m_s).max(ACCURACY_M_S);
+        for by in [-by_m_s, by_m_s] {
+            let own = |speed: &f64| match is_standstill(*speed) {
+                true => *speed,
+                false => (speed + by).max(0.0),
+            };
+            let moved = self.samples.speed_m_s.iter().map(own).collect();
+            self.bounds.push(moved);
+        }
+    }
+
     /// The first speeds of the stamps in place of their means, repaired like these.
     fn first(&self, resolution: Option<Resolution>) -> Vec<f64> {
         let Samples {

@@ -15,8 +15,9 @@ use crate::study_answers::answers;
 use crate::study_pictures::study_pictures;
 use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
+use cvtcycle_output::number::fixed;
 use cvtcycle_study::answer::ambient::Matrix;
-use cvtcycle_study::answer::{Ended, Information, KnownFactor};
+use cvtcycle_study::answer::{Ended, Information, KnownFactor, OutputAnswer};
 use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::of_hundred;
 
@@ -106,8 +107,40 @@ fn details(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<Secti
         let caption = caption(&name, study);
         section.figure(name, caption, picture);
     }
+    for output in &answer.outputs {
+        section.blocks.extend(pairs(output).map(Block::Table));
+    }
     section.folded(factors(study));
     Ok(section)
+}
+
+/// Choices of a matrix against each other, condition by condition.
+fn pairs(output: &OutputAnswer) -> Option<ReportTable> {
+    let matrix = output.matrix.as_ref()?;
+    let [conditions, _] = matrix.conditions()?;
+    let ranges = match matrix.ends.is_empty() {
+        true => "",
+        false => ", with what is known of the frictions",
+    };
+    let caption = format!(
+        "{} of {}: A less B, {}{ranges}",
+        output.output, output.car, output.unit
+    );
+    let mut heads = vec!["A", "B"];
+    heads.extend(conditions.iter().map(String::as_str));
+    let mut table = ReportTable::textual(&caption, &heads);
+    for pair in &matrix.pairs {
+        let cell = |(x, ends): (&Option<f64>, &Option<[f64; 2]>)| match ends {
+            Some([low, high]) => {
+                let [low, high] = [low, high].map(|x| fixed(*x, 2));
+                format!("{} ({low} to {high})", fixed(*x, 2))
+            }
+            None => fixed(*x, 2),
+        };
+        let cells = pair.differences.iter().zip(&pair.ends).map(cell);
+        table.row(pair.choices.iter().cloned().chain(cells));
+    }
+    Some(table)
 }
 
 fn caption(name: &str, study: &StudyResults) -> String {

@@ -304,7 +304,8 @@ impl LivePage {
             ..of_file(options.clone())
         };
         let reference = is_moved.then(|| of_file(plain.clone()));
-        let baselines = scene.baselines.iter().map(baseline);
+        let is_other = |word: &&String| !is_moved || **word != scene.vehicle;
+        let baselines = scene.baselines.iter().filter(is_other).map(baseline);
         Ok([first]
             .into_iter()
             .chain(reference)
@@ -376,7 +377,11 @@ impl LivePage {
         let section = self.section(state, &found, &histories, cycle, wanted);
         let [_, own] = self.scene.overrides()?;
         let set = own.iter().chain(&moved).map(Override::to_string);
-        let named = wanted.iter().skip(1).map(|car| car.named.clone());
+        // `run` compares a change with the car of the file by itself, unless there is to be no baseline.
+        let others = &wanted[1..];
+        let is_alone = others.iter().all(|car| car.of_file);
+        let named = others.iter().filter(|car| is_alone || !car.of_file);
+        let named = named.map(|car| car.named.clone());
         Ok(Answer {
             html: render::live(&section, self.scene.first_figure),
             command: command::command(

@@ -3,6 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | GF-1 | ends of a cell: y - sqrt(sum min(0, d_j)2), y + sqrt(sum max(0, d_j)2), y with every place at its middle, d_j the least and the largest difference with the place of friction j alone at its ends | derived: independent spreads of two standard deviations, to first order |
+//! | GF-2 | A less B: y_A - y_B, from below by sqrt(below_A2 + above_B2), from above by sqrt(above_A2 + below_B2), above and below the distances of GF-1 | derived: what is not known of one fluid says nothing about the other; the runs of both are of the same car and cycle |
 
 use serde::Serialize;
 
@@ -29,6 +30,20 @@ pub struct GridMatrix {
     /// Least and largest number of each cell over what is known of the frictions that further factors move (GF-1); empty without such factors.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<Vec<Option<[f64; 2]>>>,
+    /// Differences between the choices of each condition; empty where a minimum is taken over all cells.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<ChoicePair>,
+}
+
+/// Two choices, and what the first has less the second.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChoicePair {
+    /// The first choice and the second.
+    pub choices: [String; 2],
+    /// Difference in each condition; none where a run gave no number.
+    pub differences: Vec<Option<f64>>,
+    /// Its ends over what is known of the frictions (GF-2); none without such factors.
+    pub ends: Vec<Option<[f64; 2]>>,
 }
 
 /// True of a key that says where a friction is in its spread (FR-6).
@@ -115,7 +130,56 @@ impl GridMatrix {
             least.map(|(place, _)| place)
         };
         (self.least_of, self.least) = (least_of, (0..groups).filter_map(least).collect());
+        self.pairs = self.differences();
         self
+    }
+
+    /// Conditions and choices of a matrix whose minimum is taken for each condition.
+    #[must_use]
+    pub fn conditions(&self) -> Option<[&[String]; 2]> {
+        match self.least_of {
+            MinimumOver::All => None,
+            MinimumOver::Row => Some([&self.rows, &self.columns]),
+            MinimumOver::Column => Some([&self.columns, &self.rows]),
+        }
+    }
+
+    /// Each choice less each later one, in each condition.
+    fn differences(&self) -> Vec<ChoicePair> {
+        let Some([conditions, choices]) = self.conditions() else {
+            return Vec::new();
+        };
+        let place = |condition: usize, choice: usize| match self.least_of {
+            MinimumOver::Column => [choice, condition],
+            _ => [condition, choice],
+        };
+        // A number with its distances to the ends below and above.
+        let known = |[i, k]: [usize; 2]| {
+            let y = (*self.cells.get(i)?.get(k)?)?;
+            let ends = self.ends.get(i).and_then(|row| *row.get(k)?);
+            Some((y, ends.map(|[low, high]| [y - low, high - y])))
+        };
+        let pair = |(a, b): (usize, usize)| {
+            let of = |at: usize| {
+                let (first, second) = (known(place(at, a))?, known(place(at, b))?);
+                let difference = first.0 - second.0;
+                let ends = first.1.zip(second.1).map(|(own, other)| {
+                    [
+                        difference - own[0].hypot(other[1]),
+                        difference + own[1].hypot(other[0]),
+                    ] // GF-2
+                });
+                Some((difference, ends))
+            };
+            let all: Vec<_> = (0..conditions.len()).map(of).collect();
+            ChoicePair {
+                choices: [a, b].map(|choice| choices[choice].clone()),
+                differences: all.iter().map(|own| Some(own.as_ref()?.0)).collect(),
+                ends: all.iter().map(|own| own.as_ref()?.1).collect(),
+            }
+        };
+        let pairs = (0..choices.len()).flat_map(|a| (a + 1..choices.len()).map(move |b| (a, b)));
+        pairs.map(pair).collect()
     }
 }
 
@@ -179,6 +243,7 @@ fn folded(
         least_of: MinimumOver::All,
         least: Vec::new(),
         ends: Vec::new(),
+        pairs: Vec::new(),
     }
 }
 
@@ -202,6 +267,43 @@ mod tests {
         assert_eq!(cells, [10.0, 7.0]);
         assert_eq!(ends, [Some([5.0, 15.0]), Some([7.0, 7.0])]);
         assert_eq!(middles(&[1.0, 2.0], &[]).0, [1.0, 2.0]);
+    }
+
+    /// By hand: 10 from 7 to 14 less 6 from 2 to 9 is 4, from below by the root of 9 + 9, from above by that of 16 + 16. A choice that is certain adds
+    /// nothing.
+    #[test]
+    fn choices_are_compared_in_each_condition() {
+        let names = |list: &[&str]| list.iter().map(|x| (*x).to_owned()).collect::<Vec<_>>();
+        let mut matrix = GridMatrix {
+            factors: ["ambient".to_owned(), "oil".to_owned()],
+            rows: names(&["-10 degC", "25 degC"]),
+            columns: names(&["a", "b", "c"]),
+            cells: vec![
+                vec![Some(10.0), Some(6.0), Some(5.0)],
+                vec![Some(1.0), None, Some(3.0)],
+            ],
+            least_of: MinimumOver::All,
+            least: Vec::new(),
+            ends: vec![
+                vec![Some([7.0, 14.0]), Some([2.0, 9.0]), Some([5.0, 5.0])],
+                vec![Some([1.0, 1.0]), None, Some([2.0, 3.5])],
+            ],
+            pairs: Vec::new(),
+        };
+        assert_eq!(matrix.clone().with_least(MinimumOver::All).pairs, []);
+        matrix = matrix.with_least(MinimumOver::Row);
+        let named = |pair: &ChoicePair| pair.choices.join(" less ");
+        let all: Vec<String> = matrix.pairs.iter().map(named).collect();
+        assert_eq!(all, ["a less b", "a less c", "b less c"]);
+        let of = |pair: usize| (&matrix.pairs[pair].differences, &matrix.pairs[pair].ends);
+        let root = |x: f64| x.sqrt();
+        let ends = [4.0 - root(18.0), 4.0 + root(32.0)];
+        assert_eq!(of(0).0, &[Some(4.0), None]);
+        assert!((of(0).1[0].unwrap()[0] - ends[0]).abs() < 1e-12);
+        assert!((of(0).1[0].unwrap()[1] - ends[1]).abs() < 1e-12);
+        assert_eq!(of(1).0, &[Some(5.0), Some(-2.0)]);
+        assert_eq!(of(1).1, &[Some([2.0, 9.0]), Some([-2.5, -1.0])]);
+        assert_eq!(of(2).0, &[Some(1.0), None]);
     }
 
     #[test]

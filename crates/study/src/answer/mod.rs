@@ -11,7 +11,7 @@ mod study_table;
 mod tables;
 
 pub use column::Column;
-pub use grid::{GridMatrix, MinimumOver};
+pub use grid::{ChoicePair, GridMatrix, MinimumOver};
 pub use information::{Information, KnownFactor};
 pub use output::{OutputAnswer, Ranked};
 pub use range::Range;

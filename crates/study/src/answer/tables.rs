@@ -3,7 +3,9 @@
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 
-use super::{Answer, GridMatrix, Information, KnownFactor, OutputAnswer, Range, Ranked};
+use super::{
+    Answer, ChoicePair, GridMatrix, Information, KnownFactor, OutputAnswer, Range, Ranked,
+};
 use crate::execute::manifest::StudyManifest;
 use crate::statistics::{
     Confidence, Estimate, FactorIndices, Group, RankFactor, SobolIndices, Spread, Tornado,
@@ -32,6 +34,7 @@ pub fn tables(answer: &Answer, outline: &StudyManifest) -> Vec<(String, Vec<u8>)
             csv_bytes(&levels(), &level_rows(answer)),
         ),
         ("matrix.csv", csv_bytes(&matrix(), &matrix_rows(answer))),
+        ("pairs.csv", csv_bytes(&pairs(), &pair_rows(answer))),
     ];
     let with_rows = |(name, bytes): (&str, Option<Vec<u8>>)| Some((name.to_owned(), bytes?));
     files.into_iter().filter_map(with_rows).collect()
@@ -213,6 +216,35 @@ fn matrix<'a>() -> Vec<Column<MatrixRow<'a>>> {
         optional "value", "", "", r => r.1.cells.get(r.2).and_then(|row| *row.get(r.3)?);
         optional "low", "", "", r => end_of(r, 0);
         optional "high", "", "", r => end_of(r, 1);
+    });
+    list
+}
+
+/// Output, its matrix, two choices, and a condition.
+type PairRow<'a> = (&'a OutputAnswer, &'a GridMatrix, &'a ChoicePair, usize);
+
+fn pair_rows(answer: &Answer) -> Vec<PairRow<'_>> {
+    let mut rows = Vec::new();
+    for output in &answer.outputs {
+        let Some(matrix) = &output.matrix else {
+            continue;
+        };
+        for pair in &matrix.pairs {
+            rows.extend((0..pair.differences.len()).map(|at| (output, matrix, pair, at)));
+        }
+    }
+    rows
+}
+
+fn pairs<'a>() -> Vec<Column<PairRow<'a>>> {
+    let mut list = of_output_in_unit(|r: &PairRow<'a>| r.0);
+    list.extend(columns! { PairRow<'a>;
+        text "condition", "", "", r => r.1.conditions().map_or_else(String::new, |[own, _]| own[r.3].clone());
+        text "choice", "", "", r => r.2.choices[0].clone();
+        text "less", "", "", r => r.2.choices[1].clone();
+        optional "difference", "", "", r => r.2.differences[r.3];
+        optional "low", "", "", r => r.2.ends[r.3].map(|ends| ends[0]);
+        optional "high", "", "", r => r.2.ends[r.3].map(|ends| ends[1]);
     });
     list
 }
