@@ -395,6 +395,7 @@ fn maps_of_flow_go_below_no_torque() {
         let table = FuelTable {
             file: "map".to_owned(),
             read_as: None,
+            swept: Vec::new(),
             load: Load::Bmep,
             fuel: Fuel::Flow,
             rows: rows.iter().map(row).collect(),

@@ -5,10 +5,10 @@ use super::dialect::decimal_comma;
 use super::heading::unit_named;
 use super::named::Columns;
 use super::names::{Found, is_in};
-use super::schema::{Cells, Schema, name};
+use super::schema::{Cells, Column, Schema, name};
 use super::text::{Delimiter, Field, split};
 use crate::problem::source::shortened;
-use crate::{Problem, Setting, near, one_line};
+use crate::{Bound, Problem, Setting, near, one_line};
 
 /// A longer name of a column is not repeated in full.
 const MAX_NAME_LEN: usize = 60;
@@ -22,6 +22,8 @@ pub(super) struct Header {
     pub decimal_comma: bool,
     /// Index in the schema of each column of the file.
     pub columns: Vec<Option<usize>>,
+    /// Columns of the file that say again what one of `columns` says.
+    pub spares: Vec<Spare>,
     /// The fields of the names.
     pub fields: Vec<Field>,
     /// Number of lines above the first row, without blank ones and comments.
@@ -29,6 +31,20 @@ pub(super) struct Header {
     /// How the table was read, where it is not written as the program's own are.
     pub read_as: Option<String>,
 }
+
+/// A column of the file that is spare next to another one of its group.
+#[derive(Clone, Debug)]
+pub(super) struct Spare {
+    /// Place among the columns of the file.
+    pub at: usize,
+    /// Index in the schema.
+    pub index: usize,
+    /// The column of the schema, without its range and with empty cells: the numbers are only compared.
+    pub column: Column,
+}
+
+/// Index in the schema of each column of the file, and the spare ones.
+type Meant = (Vec<Option<usize>>, Vec<Spare>);
 
 /// A line and its fields.
 type Fields<'t> = (Line<'t>, Vec<Field>);
@@ -67,17 +83,19 @@ impl Schema {
             false => units_row(below.clone(), delimiter, names.1.len()),
         };
         let rows = below.skip(usize::from(units.is_some()));
-        let columns = self.columns_of(&names, units.as_ref(), &given, problems)?;
+        let (columns, spares) = self.columns_of(&names, units.as_ref(), &given, problems)?;
         let is_number = |k: &Option<usize>| {
             k.is_some_and(|k| matches!(self.columns[k].cells, Cells::Number(_) | Cells::Whole(_)))
         };
-        let is_number: Vec<bool> = columns.iter().map(is_number).collect();
+        let mut is_number: Vec<bool> = columns.iter().map(is_number).collect();
+        spares.iter().for_each(|own| is_number[own.at] = true);
         let above = in_order.then_some(line).into_iter();
         let decimal_comma = decimal_comma(above.chain(rows), delimiter, &is_number, problems)?;
         let mut header = Header {
             delimiter,
             decimal_comma,
             columns,
+            spares,
             fields: names.1,
             lines: lines + usize::from(!in_order) + usize::from(units.is_some()),
             read_as: None,
@@ -142,7 +160,7 @@ impl Schema {
         units: Option<&Fields<'_>>,
         named: &Columns,
         problems: &mut Collector<'_>,
-    ) -> Option<Vec<Option<usize>>> {
+    ) -> Option<Meant> {
         let (line, fields) = names;
         if !named.is_empty() {
             let units = units.map(|(line, fields)| (*line, &**fields));
@@ -152,26 +170,41 @@ impl Schema {
             if problems.count() == before {
                 self.require((*line, &[]), &found, &[], problems);
             }
-            return Some(found);
+            return Some((found, Vec::new()));
         }
         let mut found = Vec::with_capacity(fields.len());
+        let mut spares = Vec::new();
         let mut meant = Vec::new();
         for (k, &field) in fields.iter().enumerate() {
             let unit = units.and_then(|(line, units)| Some((*line, *units.get(k)?)));
             let meaning = |k: usize| {
                 let below = units.and_then(|(line, units)| Some(line.text_of(*units.get(k)?)));
                 match self.find(line.text_of(fields[k]), below) {
-                    Found::Column(index) => Some(&self.columns[index]),
+                    Found::Column(index) => Some(index),
                     _ => None,
                 }
             };
             // A mean effective pressure next to its torque says the same for the engine that was measured.
-            let is_better = |own: &super::schema::Column| {
-                let mut others = (0..fields.len()).filter_map(meaning);
+            let is_better = |own: &Column| {
+                let others = (0..fields.len()).filter_map(meaning);
+                let mut others = others.map(|index| &self.columns[index]);
                 others.any(|other| !other.is_spare && other.is_same(own))
             };
-            if meaning(k).is_some_and(|own| own.is_spare && is_better(own)) {
+            if let Some(index) = meaning(k)
+                && let own = &self.columns[index]
+                && own.is_spare
+                && is_better(own)
+            {
                 found.push(None);
+                let column = Column {
+                    cells: Cells::Number(Bound::any()),
+                    ..own.clone().or_empty()
+                };
+                spares.push(Spare {
+                    at: k,
+                    index,
+                    column,
+                });
                 continue;
             }
             let index = self.column(*line, field, unit, &found, &mut meant, problems);
@@ -188,7 +221,7 @@ impl Schema {
             return None;
         }
         self.require((*line, fields), &found, &meant, problems);
-        Some(found)
+        Some((found, spares))
     }
 
     /// The column that a name means, the first time that it is there.

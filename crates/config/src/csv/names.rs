@@ -98,6 +98,16 @@ impl Schema {
             .filter(move |(_, column)| column.cells != Cells::Ignored && stem(&column.name) == own)
     }
 
+    /// The problem of a column that the user names next to another one of its group.
+    fn said_again(&self, column: usize, before: &[usize]) -> Option<Problem> {
+        let own = &self.columns[column];
+        let mut others = before.iter().map(|k| &self.columns[*k]);
+        let other = others.find(|other| other.is_same(own))?;
+        let message = format!("{} and {} say the same thing", other.name, own.name);
+        let problem = Problem::conflict(message).at(Argument::Columns);
+        Some(problem.allowed("one of them").hint("name one of them"))
+    }
+
     /// The units of a quantity's columns, for people; a whole name of a column has its own.
     pub(super) fn units_of(&self, quantity: &str) -> Vec<&'static str> {
         let word = bare(stem(quantity));
@@ -124,11 +134,17 @@ impl Columns {
     /// The columns of the schema in the order in which they are given.
     ///
     /// # Errors
-    /// A quantity that the schema does not have, or not in that unit.
+    /// A quantity that the schema does not have, or not in that unit, or two that say the same thing.
     pub fn in_order(&self, schema: &Schema) -> Result<Vec<usize>, Problem> {
         let column = |entry: &Entry| entry.column(None, schema);
         let all: Result<Vec<usize>, Problem> = self.list.iter().map(column).collect();
-        all.map_err(|problem| problem.at(Argument::Columns))
+        let all = all.map_err(|problem| problem.at(Argument::Columns))?;
+        for (k, column) in all.iter().enumerate() {
+            if let Some(problem) = schema.said_again(*column, &all[..k]) {
+                return Err(problem);
+            }
+        }
+        Ok(all)
     }
 
     /// The names that are given, each with its column of the schema.
@@ -154,6 +170,7 @@ impl Columns {
         problems: &mut Collector<'_>,
     ) -> Vec<Option<usize>> {
         let mut found = vec![None; fields.len()];
+        let mut before = Vec::new();
         for (k, entry) in self.list.iter().enumerate() {
             let is_it = |field: &Field| Some(line.text_of(*field)) == entry.name.as_deref();
             let at = match entry.name {
@@ -166,7 +183,13 @@ impl Columns {
             };
             let below = units.and_then(|(line, units)| Some(line.text_of(*units.get(at)?)));
             match entry.column(below, schema) {
-                Ok(column) => found[at] = Some(column),
+                Ok(column) => {
+                    if let Some(problem) = schema.said_again(column, &before) {
+                        problems.add(problem);
+                    }
+                    before.push(column);
+                    found[at] = Some(column);
+                }
                 Err(problem) => problems.add(problem.at(Argument::Columns)),
             }
         }

@@ -84,6 +84,19 @@ impl<'s> Table<'s> {
         self.header.columns.iter().flatten().copied().find(is_in)
     }
 
+    /// Columns of the schema that say again what another one of their group says; [`Row::spare`] has their cells.
+    pub fn spares(&self) -> impl Iterator<Item = usize> {
+        self.header.spares.iter().map(|own| own.index)
+    }
+
+    /// The name of a column of the schema in the file. Behind the line of names, as its fields are those of the line that was read last.
+    pub fn written<'t>(&self, names: Line<'t>, column: usize) -> Option<&'t str> {
+        let mut spares = self.header.spares.iter();
+        let spare = || Some(spares.find(|own| own.index == column)?.at);
+        let at = self.positions[column].or_else(spare)?;
+        Some(names.text_of(*self.fields.get(at)?))
+    }
+
     /// Name of a column of the schema.
     pub fn name(&self, column: usize) -> &'s str {
         &self.schema.columns[column].name
@@ -103,6 +116,11 @@ impl<'s> Table<'s> {
                     }
                     None => Value::Word,
                 };
+            }
+            for spare in &self.header.spares {
+                let cell = (line, self.fields[spare.at]);
+                self.values[spare.at] =
+                    read_cell(cell, &spare.column, self.header.decimal_comma, problems);
             }
         } else {
             self.fields.clear();
@@ -188,6 +206,25 @@ impl<'a, 't> Row<'a, 't> {
         }
     }
 
+    /// The number of a cell and half of its last digit, by which rounding may have moved it.
+    pub fn rounded(&self, column: usize) -> Option<[f64; 2]> {
+        Some([self.number(column)?, self.half_digit(self.field(column)?)])
+    }
+
+    /// The number of the spare column at that place of [`Table::spares`], half of its last digit, and its place in the line; none of an empty cell.
+    pub fn spare(&self, place: usize) -> Option<([f64; 2], Field)> {
+        let at = self.table.header.spares.get(place)?.at;
+        let (value, field) = (self.table.values[at], *self.table.fields.get(at)?);
+        match value {
+            Value::Number(x) => Some(([x, self.half_digit(field)], field)),
+            _ => None,
+        }
+    }
+
+    fn half_digit(&self, field: Field) -> f64 {
+        half_digit(self.line.text_of(field), self.table.header.decimal_comma)
+    }
+
     /// The word of a cell; empty where there is none.
     pub fn word(&self, column: usize) -> &'t str {
         match (self.value(column), self.field(column)) {
@@ -236,6 +273,22 @@ impl<'a, 't> Row<'a, 't> {
             }
         }
     }
+}
+
+/// Half of the last digit of a number: 0.05 of `12.5` and of `125e-1`.
+fn half_digit(text: &str, decimal_comma: bool) -> f64 {
+    let (digits, power) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let sign = if decimal_comma && digits.contains(',') {
+        ','
+    } else {
+        '.'
+    };
+    let decimals = digits
+        .split_once(sign)
+        .map_or(0, |(_, behind)| behind.len());
+    let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
+    let power = power.parse::<i32>().unwrap_or(0);
+    0.5 * 10f64.powi(power.saturating_sub(decimals))
 }
 
 /// Most lines of [`first_fields`].

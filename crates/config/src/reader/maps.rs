@@ -3,6 +3,7 @@
 mod box_script;
 mod fuel;
 mod grid;
+mod loads;
 mod row;
 mod script;
 mod wide;
@@ -21,7 +22,7 @@ use crate::problem::{Problem, Setting};
 use crate::reader::section::Section;
 use cvtcycle_model::keys::file_table::{FileColumn, FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Quantity};
-use cvtcycle_model::maps::{Basis, BsfcMap, FuelRow, FuelTable, LossMap, NoMap};
+use cvtcycle_model::maps::{Basis, BsfcMap, FuelRow, FuelTable, LossMap, NoMap, Swept};
 use cvtcycle_model::math::{GRID_AXES, Grid};
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
@@ -35,6 +36,8 @@ pub(crate) struct MapTable {
     /// Name of the file.
     file: String,
     read_as: Option<String>,
+    /// Swept volumes that a load gives which the file says twice.
+    swept: Vec<Swept>,
     loss: OnceLock<LossMap>,
     /// With the engine that was measured, whose values are parts of its numbers.
     bsfc: Mutex<Option<(Basis, BsfcMap)>>,
@@ -124,6 +127,7 @@ fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Map
                 rows: read.rows.into_iter().map(|(_, values)| values).collect(),
                 file: named.file.clone(),
                 read_as: read.read_as,
+                swept: read.swept,
                 loss: OnceLock::new(),
                 bsfc: Mutex::default(),
             }) as Made),
@@ -360,6 +364,7 @@ impl MapTable {
             read_as: self.read_as.clone(),
             load: load.2,
             fuel: burnt.2,
+            swept: self.swept.clone(),
             rows: self.rows.iter().zip(&self.lines).map(row).collect(),
         };
         let map = BsfcMap::from_table(&table, basis, (0.0, 0.0))?;

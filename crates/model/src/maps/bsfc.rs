@@ -122,6 +122,7 @@ impl BsfcMap {
         basis: &Basis,
         friction: (f64, f64),
     ) -> Result<Self, NoMap> {
+        table.check_volume(basis)?;
         let (mut points, left_out) = table.points(basis)?;
         // Points that fill a grid but for the rounding of their numbers are one: triangles between a level and itself are none.
         let near = match is_grid(&points, ROUNDING) {

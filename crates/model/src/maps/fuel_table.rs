@@ -6,6 +6,12 @@ use std::f64::consts::PI;
 use super::NoMap;
 use crate::math::rad_s;
 
+/// Share by which the swept volume of a table may differ from that of the engine that was measured. ASSUMED: volumes in litres with one decimal, 1.5 for
+/// 1.46 to 1.54.
+const SAME_VOLUME: f64 = 0.03;
+/// Swept volumes that the key `measured_cc` may have, m3.
+const VOLUMES_M3: std::ops::RangeInclusive<f64> = 200e-6..=20_000e-6;
+
 /// Slowest engine, rpm: rows of a table at rest and below it belong to no running engine.
 const SLOWEST_RPM: f64 = 100.0;
 
@@ -57,6 +63,19 @@ pub struct FuelRow {
     pub line: usize,
 }
 
+/// Swept volume that two columns of a load give.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swept {
+    /// Torque over mean effective pressure, times 4 pi, m3.
+    pub volume_m3: f64,
+    /// Share of it by which the rounding of the numbers may have moved it.
+    pub rounding: f64,
+    /// Names of the load and of the mean effective pressure in the file.
+    pub columns: [String; 2],
+    /// Text by which the key of the file says that only the first of them is meant.
+    pub choice: String,
+}
+
 /// A table as a file has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FuelTable {
@@ -68,6 +87,8 @@ pub struct FuelTable {
     pub load: Load,
     /// Quantity of the fuel.
     pub fuel: Fuel,
+    /// Swept volumes, where the file says the load twice.
+    pub swept: Vec<Swept>,
     /// The rows.
     pub rows: Vec<FuelRow>,
 }
@@ -103,6 +124,33 @@ impl FuelTable {
             }
         }
         Ok((points, left_out))
+    }
+
+    /// Refuses a table whose columns are of another swept volume than the engine that was measured: they leave open by which of the two its loads are to be
+    /// read, and these differ as the volumes do.
+    pub(super) fn check_volume(&self, basis: &Basis) -> Result<(), NoMap> {
+        let own = basis.displacement_m3;
+        let differs =
+            |swept: &&Swept| (swept.volume_m3 / own - 1.0).abs() > SAME_VOLUME + swept.rounding;
+        let Some(swept) = self.swept.iter().find(differs) else {
+            return Ok(());
+        };
+        let [torque, pressure] = &swept.columns;
+        let cc = swept.volume_m3 * 1e6;
+        let message = format!(
+            "{torque} over {pressure} in {} is a swept volume of {cc:.0} cc, and the engine that was measured has {:.0} cc (measured_cc, or where it is absent displacement_cc of the car)",
+            self.file,
+            own * 1e6
+        );
+        let choice = format!(
+            "or say that only {torque} is right: {{ value = \"FILE\", {} }}",
+            swept.choice
+        );
+        let hint = match VOLUMES_M3.contains(&swept.volume_m3) {
+            true => format!("write measured_cc = {cc:.0} next to the file, {choice}"),
+            false => format!("correct the unit of one of the columns, {choice}"),
+        };
+        Err(NoMap::new("one swept volume within 3 %", message, &hint))
     }
 
     fn point(&self, row: &FuelRow, basis: &Basis) -> Result<Option<Point>, NoMap> {

@@ -6,7 +6,7 @@ mod judge;
 mod loss;
 
 pub use bsfc::{BsfcMap, Origin};
-pub use fuel_table::{Basis, Fuel, FuelRow, FuelTable, Load, Point};
+pub use fuel_table::{Basis, Fuel, FuelRow, FuelTable, Load, Point, Swept};
 pub use judge::Verdict;
 pub use loss::{LossMap, MapPoint, Scatter};
 

@@ -180,6 +180,7 @@ fn val_rows_make_a_map() {
         let table = FuelTable {
             file: "map".to_owned(),
             read_as: None,
+            swept: Vec::new(),
             load: Load::Bmep,
             fuel: Fuel::PerWork,
             rows: rows.iter().enumerate().map(row).collect(),

@@ -5,11 +5,13 @@ use std::path::Path;
 
 use super::box_script;
 use super::fuel::{self, Unread};
+use super::loads::{Doubled, Loads};
 use super::row::{Row, is_value};
 use super::script::{Matrix, Script};
 use super::wide::Wide;
-use crate::csv::{self, Collector, Columns, Line, Schema};
+use crate::csv::{self, Collector, Column, Columns, Line, Schema};
 use crate::{Argument, Problem, Problems};
+use cvtcycle_model::maps::Swept;
 
 /// The limit of rows, as many points as `losses` writes, and what helps beyond it.
 pub(super) const MAX_ROWS: (usize, &str) = (
@@ -32,6 +34,8 @@ pub(super) struct Rows {
     pub columns: Vec<usize>,
     /// Rows in the units of the columns, each with its line in the file.
     pub rows: Vec<(usize, Vec<f64>)>,
+    /// Swept volumes that a load gives which the file says twice.
+    pub swept: Vec<Swept>,
     /// How it was read, in words, where it is not written as the program's own are.
     pub read_as: Option<String>,
 }
@@ -60,6 +64,7 @@ pub(super) fn read(file: &str, bytes: &[u8], wanted: Wanted<'_>) -> Result<Rows,
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("m"));
     let text = String::from_utf8_lossy(bytes);
+    let mut swept = Vec::new();
     let (columns, mut rows, read_as) = if is_script {
         script(schema, &text, is_fuel, &mut problems)
     } else {
@@ -72,7 +77,7 @@ pub(super) fn read(file: &str, bytes: &[u8], wanted: Wanted<'_>) -> Result<Rows,
                 problems.file(problem);
                 (Vec::new(), Vec::new(), None)
             }
-            None => long(schema, bytes, &mut problems),
+            None => long(schema, bytes, &mut swept, &mut problems),
         }
     };
     if problems.is_empty() {
@@ -86,6 +91,7 @@ pub(super) fn read(file: &str, bytes: &[u8], wanted: Wanted<'_>) -> Result<Rows,
     Ok(Rows {
         columns,
         rows: rows.collect(),
+        swept,
         read_as,
     })
 }
@@ -233,6 +239,21 @@ fn by_names<'t>(
         })?;
         found.push((column, value));
     }
+    let is_there = |own: &Column| {
+        let mut columns = found.iter().map(|(column, _)| &schema.columns[*column]);
+        columns.any(|other| other.is_same(own))
+    };
+    let mut required = schema.columns.iter().filter(|own| own.required);
+    if let Some(own) = required.find(|own| !is_there(own)) {
+        let same = schema.columns.iter().filter(|other| other.is_same(own));
+        let same = same.filter(|other| !other.is_alias);
+        let names: Vec<&str> = same.map(|other| &*other.name).collect();
+        let names = names.join(" or ");
+        return Err(Problem::missing(format!("the columns name no {names}"))
+            .at(Argument::Columns)
+            .allowed(names)
+            .hint("name it too"));
+    }
     found.sort_by_key(|(column, _)| *column);
     let columns: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
     let count = found.first().map_or(0, |(_, value)| value.values.len());
@@ -267,13 +288,19 @@ fn by_names<'t>(
 }
 
 /// The rows of a file with a line for each point.
-fn long<'t>(schema: &Schema, bytes: &'t [u8], problems: &mut Collector<'_>) -> Found<'t> {
+fn long<'t>(
+    schema: &Schema,
+    bytes: &'t [u8],
+    swept: &mut Vec<Swept>,
+    problems: &mut Collector<'_>,
+) -> Found<'t> {
     let mut rows = Vec::new();
+    let (mut doubled, mut loads) = (Doubled::default(), Loads::default());
     let table = csv::read(
         bytes,
         schema,
         problems,
-        |_, _, _| {},
+        |table, names, _| doubled = Doubled::new(table, schema, names),
         |row, _| {
             let indices = 0..schema.columns.len();
             let there = indices.filter(|k| row.table().has(*k));
@@ -281,6 +308,7 @@ fn long<'t>(schema: &Schema, bytes: &'t [u8], problems: &mut Collector<'_>) -> F
             let values: Vec<f64> = values;
             // A row without a value is a hole, or has its problem.
             if values.iter().all(|x| x.is_finite()) || row.has_bad() {
+                loads.take(row, schema);
                 rows.push(Row {
                     line: row.line,
                     values,
@@ -289,6 +317,9 @@ fn long<'t>(schema: &Schema, bytes: &'t [u8], problems: &mut Collector<'_>) -> F
             true
         },
     );
+    if problems.is_empty() {
+        *swept = loads.swept(doubled, problems);
+    }
     let read_as = table.as_ref().and_then(|table| table.read_as());
     let read_as = read_as.map(str::to_owned);
     let columns = table.map_or_else(Vec::new, |table| {
