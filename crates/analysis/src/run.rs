@@ -209,7 +209,7 @@ fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
 }
 
 /// How far rate, resolution and smoothing of a recording leave the results open (LG-6): the cars drive it with a quarter and four times the density of
-/// LG-3 too.
+/// LG-3 too, and with speeds lower and higher by their error.
 fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let recorded = of.cycle.recording.as_deref();
     let Some((own, recorded)) = summary.recording.as_mut().zip(recorded) else {

@@ -189,8 +189,12 @@ impl<R: Real> RoadLoad<R> {
 
     /// Rise of the power F v over a step with a constant part of force `c`, W.
     fn rise_w(&self, c: R, step: &Step) -> R {
-        let at = |v: f64| c.splat(v) * (c + (self.f1_n_per_m_s + self.f2_n_per_m_s2 * v) * v);
-        at(step.end_speed_m_s) - at(step.start_speed_m_s)
+        self.power_at_w(c, step.end_speed_m_s) - self.power_at_w(c, step.start_speed_m_s)
+    }
+
+    /// Power F v at a speed with a constant part of force `c`, W.
+    fn power_at_w(&self, c: R, v: f64) -> R {
+        c.splat(v) * (c + (self.f1_n_per_m_s + self.f2_n_per_m_s2 * v) * v)
     }
 
     /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).

@@ -363,6 +363,34 @@ values = [1]
     assert!(!dir.path().join("out").exists());
 }
 
+/// Truth: `run` of the same cars. A study says of the same pair no other range of measured cars: it took a like car for any other one.
+#[test]
+fn a_pair_has_the_range_of_measured_cars_that_a_run_gives_it() {
+    let dir = folder(&PLAN);
+    let run = json(&ends(dir.path(), &["run", "--ambient", "-10", "--json"], 0));
+    let fleet = &run["comparison"][0]["fleet"];
+    let cars = fleet["cars"].as_u64().unwrap();
+    let words = [
+        "study",
+        "uncertainty_rover",
+        "--samples",
+        "8",
+        "--out",
+        "out",
+    ];
+    let text = String::from_utf8(ends(dir.path(), &words, 0).stdout).unwrap();
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = format!("by the error of the model on {cars} measured cars");
+    assert!(text.contains(&said), "{said} in {text}");
+    let stored = std::fs::read(dir.path().join("out/study.json")).unwrap();
+    let stored: Value = serde_json::from_slice(&stored).unwrap();
+    assert_eq!(stored["cars"][1]["like_for_like"], true);
+    // The shown study reads it again.
+    let shown = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 0).stdout).unwrap();
+    let shown = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(shown.contains(&said), "{said} in {shown}");
+}
+
 /// Matrix of the thesis: 20 runs with the numbers of `run`, with pictures.
 #[test]
 fn the_ambient_matrix() {

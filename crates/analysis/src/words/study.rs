@@ -54,9 +54,10 @@ pub fn fleet_range(
     let is_twin = outline.cars[baseline] == format!("{}_twin", outline.cars[0]);
     let of = Compared {
         kinds: [own?, other?],
-        other: match is_twin && outline.plan.base.set.is_empty() {
-            true => Other::Twin,
-            false => Other::Any,
+        other: match outline.alike.get(baseline) {
+            _ if is_twin && outline.plan.base.set.is_empty() => Other::Twin,
+            Some(true) => Other::Alike,
+            _ => Other::Any,
         },
     };
     difference_range(of, on, percent).filter(|_| percent.is_finite())

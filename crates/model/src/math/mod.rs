@@ -62,15 +62,17 @@ pub fn mean_ramp<R: Real>([first, last]: [R; 2], from: R, to: R) -> R {
     if !wide.any() {
         return middle;
     }
-    let width = to - from;
-    let zero = apart.splat(0.0);
-    // Integral of the ramp up to a number.
-    let up_to = |x: R| {
-        let along = (x - from).clamp(zero, width.max(zero));
-        let risen = width.gt(0.0).select(0.5 * along * along / width, zero);
-        risen + (x - to).max(zero)
-    };
-    wide.select((up_to(last) - up_to(first)) / apart, middle)
+    let risen = ramp_integral(last, from, to) - ramp_integral(first, from, to);
+    wide.select(risen / apart, middle)
+}
+
+/// Integral of [`ramp`] up to a number.
+#[physics]
+fn ramp_integral<R: Real>(x: R, from: R, to: R) -> R {
+    let (width, zero) = (to - from, x.splat(0.0));
+    let along = (x - from).clamp(zero, width.max(zero));
+    let risen = width.gt(0.0).select(0.5 * along * along / width, zero);
+    risen + (x - to).max(zero)
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).

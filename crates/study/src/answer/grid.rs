@@ -42,7 +42,7 @@ pub struct ChoicePair {
     pub choices: [String; 2],
     /// Difference in each condition; none where a run gave no number.
     pub differences: Vec<Option<f64>>,
-    /// Its ends over what is known of the frictions (GF-2); none without such factors.
+    /// Ends of the difference over the spreads of the frictions (GF-2); none without such factors.
     pub ends: Vec<Option<[f64; 2]>>,
 }
 

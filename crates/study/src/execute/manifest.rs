@@ -4,6 +4,7 @@ use cvtcycle_config::Problems;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::record::Manifest;
+use cvtcycle_output::summary::differences;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -94,6 +95,7 @@ impl Study {
             "title": setup.title,
             "short": setup.short,
             "transmission": word(setup),
+            "like_for_like": alike(self, car),
             "lubricant": setup.oils().0.name,
             "engine_oil": setup.oils().1.name,
             // Other files, such as measured maps, are in the car though not in its keys.
@@ -113,6 +115,16 @@ fn word(setup: &Setup) -> &'static str {
 fn kind(study: &Study, car: &super::cars::StudyCar) -> String {
     let variant = car.variant(0, &study.plan.factors);
     variant.map_or_else(|_| String::new(), |variant| word(&variant.setup).to_owned())
+}
+
+/// True of a car that has the road load, tyres and engine of the subject, as the comparison of a run says it.
+fn alike(study: &Study, car: &super::cars::StudyCar) -> bool {
+    let factors = &study.plan.factors;
+    let subject = study.cars.first().map(|own| own.variant(0, factors));
+    match (subject, car.variant(0, factors)) {
+        (Some(Ok(subject)), Ok(car)) => differences(&subject.setup, &car.setup).is_empty(),
+        _ => false,
+    }
 }
 
 fn columns(columns: &[Head]) -> Vec<Value> {
@@ -153,6 +165,8 @@ pub struct StudyManifest {
     pub cars: Vec<String>,
     /// Kinds of their boxes, `cvt` or `manual`; empty words in studies of earlier versions.
     pub kinds: Vec<String>,
+    /// True of cars with the road load, tyres and engine of the subject; false in studies of earlier versions.
+    pub alike: Vec<bool>,
     /// Phase groups.
     pub phases: Vec<String>,
     /// Limits of the results, a sentence each.
@@ -202,6 +216,8 @@ struct StoredCar {
     name: String,
     #[serde(default)]
     transmission: String,
+    #[serde(default)]
+    like_for_like: bool,
 }
 
 impl StudyManifest {
@@ -215,6 +231,7 @@ impl StudyManifest {
             notes: study.notes.clone(),
             cars: study.cars.iter().map(|car| car.name.to_string()).collect(),
             kinds: study.cars.iter().map(|car| kind(study, car)).collect(),
+            alike: study.cars.iter().map(|car| alike(study, car)).collect(),
             phases: study.phases.clone(),
             analysed: analysed(&study.analysed(), &columns),
             columns,
@@ -252,6 +269,7 @@ impl StudyManifest {
         }
         let heads = stored.columns.into_iter();
         let columns: Vec<_> = heads.map(|c| (c.name, c.unit)).collect();
+        let alike = stored.cars.iter().map(|car| car.like_for_like).collect();
         let (cars, kinds) = stored
             .cars
             .into_iter()
@@ -259,6 +277,7 @@ impl StudyManifest {
             .unzip();
         Ok(StudyManifest {
             kinds,
+            alike,
             title: stored.title,
             question: stored.question,
             notes: stored.notes,

@@ -15,7 +15,7 @@ const SHARE: f64 = 0.02;
 /// A load and a mean effective pressure next to it, as the file names them.
 struct Names {
     both: [String; 2],
-    /// What to type where only the first is right, or only the second.
+    /// Text to type that names only the first, and only the second.
     choices: [String; 2],
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Doubled(Vec<Names>);
 pub(super) struct Loads<'t>(Vec<Vec<Pair<'t>>>);
 
 impl Doubled {
-    /// Of a table behind its line of names.
+    /// Collects the names while the line of names is the last one read, since a table keeps the fields of that line alone.
     pub fn new(table: &Table<'_>, schema: &Schema, line: Line<'_>) -> Self {
         let names = |spare: usize| {
             let own = table.group_column(schema.columns[spare].group)?;

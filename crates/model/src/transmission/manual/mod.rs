@@ -221,11 +221,16 @@ impl<R: Real> Manual<R> {
         let shifts = R::get(&self.shifts, run);
         let by_speed = shifts.for_speed(step.wheel.speed_m_s, before, self.overall.len());
         match gear < by_speed {
-            true if gear == before => (state.lowered_s + step.dt_s).lane(run),
+            true if gear == before => sum_s(state.lowered_s.lane(run), step.dt_s),
             true => step.dt_s,
             false => 0.0,
         }
     }
+}
+
+/// Sum of two times of one run, s: the bounds of a method over lanes hide the sum of plain numbers.
+fn sum_s(a: f64, b: f64) -> f64 {
+    a + b
 }
 
 /// True where a closed clutch would turn the engine near or below its idle speed.
