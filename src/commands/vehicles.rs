@@ -228,7 +228,8 @@ pub fn load(
     };
     // A change is compared with the car of the file, unless that is no whole car without it. A baseline that names the same file is that car.
     let is_changed = car.lubricant.is_some() || !car.set.is_empty();
-    let is_named = names.contains(&car.vehicle);
+    let is_own = |name: &String| setup::is_same_vehicle(name, &car.vehicle);
+    let is_named = names.iter().any(is_own);
     let is_wanted = is_named || (baselines == Baselines::OfFile && !comparison.has_none());
     let unchanged = (is_changed && is_wanted)
         .then(|| setup::load(&car.vehicle, &baseline).ok())
@@ -238,7 +239,7 @@ pub fn load(
     let has_unchanged = unchanged.is_some();
     let names: Vec<String> = names
         .into_iter()
-        .filter(|name| !(has_unchanged && *name == car.vehicle))
+        .filter(|name| !(has_unchanged && is_own(name)))
         .collect();
     loaded.extend(unchanged.map(|mut setup| {
         setup.short += " as it is";

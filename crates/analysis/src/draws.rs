@@ -10,7 +10,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
-use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, baseline_of, is_twin, load, name_of};
+use cvtcycle_config::setup::{
+    NamedBy, Options, Setup, TWIN, baseline_of, is_same_vehicle, is_twin, load, name_of,
+};
 use cvtcycle_config::{Acts, Override, Problem, Problems};
 use cvtcycle_output::progress::{NoProgress, Progress};
 use cvtcycle_output::summary::{DrawnDifference, FAILED_SHARES};
@@ -96,7 +98,7 @@ impl Compared {
         let mut others: Vec<OtherCar> = unchanged.into_iter().collect();
         for name in base.baselines.as_ref().unwrap_or(&setup.baselines) {
             // The subject's own file is the car unchanged.
-            if is_changed && *name == base.vehicle {
+            if is_changed && is_same_vehicle(name, &base.vehicle) {
                 continue;
             }
             others.push(baseline(name, (base, &options), &plain)?);

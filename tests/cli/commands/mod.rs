@@ -250,6 +250,25 @@ fn the_files_that_a_vehicle_names_are_read_from_its_folder() {
     );
     let summary: Value = serde_json::from_slice(&good.stdout).unwrap();
     assert_eq!(summary["runs"][1]["vehicle"], "other");
+    // A baseline that is the file of the car by another spelling is the car unchanged.
+    let own = run_in(
+        dir.path(),
+        &[
+            "run",
+            "--cycle",
+            "ece15",
+            "--vehicle",
+            "cars/good.toml",
+            "--set",
+            "road_load.mass_kg=1200",
+            "--baseline",
+            "./cars/good.toml",
+            "--json",
+        ],
+    );
+    let own: Value = serde_json::from_slice(&own.stdout).unwrap();
+    assert_eq!(own["runs"][1]["role"], "unchanged");
+    assert_eq!(own["runs"].as_array().map(Vec::len), Some(2));
     for words in [
         &["run", "--vehicle", "cars/bad.toml"][..],
         &["check", "cars/bad.toml"],

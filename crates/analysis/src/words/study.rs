@@ -1,7 +1,7 @@
 //! Sentences about a study: how often and by how much the subject uses more, the factor that decides it and is worth knowing, the minimum of an output,
 //! and the published numbers that contradict it.
 
-use cvtcycle_config::setup::Kind;
+use cvtcycle_config::setup::{Kind, is_same_vehicle};
 use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{fixed, plain, signed};
 
@@ -42,7 +42,7 @@ pub fn fleet_range(
         .baselines
         .as_ref()
         .and_then(|names| names.get(baseline.checked_sub(1)?));
-    if is_same.is_some_and(|name| *name == base.vehicle) {
+    if is_same.is_some_and(|name| is_same_vehicle(name, &base.vehicle)) {
         return None;
     }
     let places = [0, baseline];

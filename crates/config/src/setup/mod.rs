@@ -278,6 +278,20 @@ pub fn baseline_of(of: &str, named: &str) -> String {
     }
 }
 
+/// True if two words name one vehicle: the same name, or paths of one file.
+///
+/// ```
+/// use cvtcycle_config::setup::is_same_vehicle;
+/// assert!(is_same_vehicle("rover_216_cvt", "rover_216_cvt"));
+/// assert!(is_same_vehicle("./Cargo.toml", "Cargo.toml"));
+/// assert!(!is_same_vehicle("rover_216_cvt", "rover_216_cvt.toml"));
+/// ```
+#[must_use]
+pub fn is_same_vehicle(a: &str, b: &str) -> bool {
+    let place = |word: &str| std::fs::canonicalize(word).ok().filter(|_| is_path(word));
+    a == b || place(a).is_some_and(|a| Some(a) == place(b))
+}
+
 fn unknown_name(word: &str, kind: Kind) -> Problem {
     let names = kind.names();
     let question = did_you_mean(word, names.iter().copied());

@@ -107,7 +107,7 @@ fn details(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<Secti
         let caption = caption(&name, study);
         section.figure(name, caption, picture);
     }
-    for output in &answer.outputs {
+    for output in answer.outputs.iter().filter(|of| of.output == EXCESS) {
         section.blocks.extend(pairs(output).map(Block::Table));
     }
     section.folded(factors(study));

@@ -8,7 +8,9 @@ use cvtcycle_analysis::words::run::{
     assess_fleet, contradicted, contradictions, maps_left, sentences,
 };
 use cvtcycle_config::cycle::{self, Cycle};
-use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, is_twin, load, name_of};
+use cvtcycle_config::setup::{
+    NamedBy, Options, Setup, TWIN, is_same_vehicle, is_twin, load, name_of,
+};
 use cvtcycle_config::{Override, Problem, Problems, carried};
 use cvtcycle_model::drive::{Conditions, Outcome, drive};
 use cvtcycle_output::History;
@@ -304,7 +306,7 @@ impl LivePage {
             ..of_file(options.clone())
         };
         let reference = is_moved.then(|| of_file(plain.clone()));
-        let is_other = |word: &&String| !is_moved || **word != scene.vehicle;
+        let is_other = |word: &&String| !is_moved || !is_same_vehicle(word, &scene.vehicle);
         let baselines = scene.baselines.iter().filter(is_other).map(baseline);
         Ok([first]
             .into_iter()
