@@ -62,10 +62,9 @@ impl Chart {
                 own.label(label.size(12.0).middle());
             }
             let more = LINE * title.len().saturating_sub(1) as f64;
-            own.below = if own.x_labels {
-                BELOW + more + 6.0
-            } else {
-                8.0
+            own.below = match own.x_labels {
+                true => BELOW + more + 6.0,
+                false => hanging(&own).max(8.0),
             };
             top = own.rect.bottom + own.below;
             named.extend(names);
@@ -113,6 +112,16 @@ fn has_left_labels(panel: &Panel) -> bool {
 /// True if texts have their place above a plot.
 fn has_labels_above(panel: &Panel) -> bool {
     labels(panel).any(|label| label.at.y.is_infinite() && label.at.y > 0.0 && label.at.dy < 0.0)
+}
+
+/// Room of the texts below a plot that writes no labels of an axis, pixels: words of its levels may be turned.
+fn hanging(panel: &Panel) -> f64 {
+    let below = labels(panel).filter(|label| label.at.y.is_infinite() && label.at.y < 0.0);
+    let end = |label: &Label| match label.turned {
+        true => label.at.dy + text_width(&label.text, label.size).min(label.room),
+        false => label.at.dy + 4.0,
+    };
+    below.map(end).fold(0.0, f64::max) + 6.0
 }
 
 fn labels(panel: &Panel) -> impl Iterator<Item = &Label> {
@@ -328,4 +337,34 @@ fn thinned(axis: &Axis, width: f64, (left, right): (f64, f64)) -> Axis {
     let kept = ticks.filter(|(k, _)| k.abs_diff(zero) % every == 0);
     axis.ticks = kept.map(|(_, tick)| tick).collect();
     axis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Property: words below a plot, turned or not, end above the next plot.
+    #[test]
+    fn words_below_a_plot_have_room() {
+        let axis = || Axis::exact("", 0.0, 1.0, 3);
+        let rect = || Rect::new(60.0, 60.0, 200.0, 150.0);
+        for (turned, room) in [(true, 78.0), (false, 4.0)] {
+            let mut first = Panel::new(rect(), axis(), axis()).x_labels(false);
+            let place = at(0.5, f64::NEG_INFINITY).shift(4.0, 8.0);
+            let label = Label::new(place, "a word that is longer than its room");
+            let label = match turned {
+                true => label.turned().end(),
+                false => label,
+            };
+            first.label(label.cut(Cut::Middle, 78.0));
+            let chart = Chart::new("t".to_owned(), "s", 60.0);
+            let chart = chart.panels([first, Panel::new(rect(), axis(), axis())]);
+            let narrow = chart.narrowed().unwrap();
+            let [above, below] = &narrow.panels[..] else {
+                panic!("two panels")
+            };
+            let free = below.rect.top - above.rect.bottom;
+            assert!(free >= 8.0 + room, "{free}");
+        }
+    }
 }

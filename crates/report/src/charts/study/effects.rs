@@ -26,8 +26,9 @@ const TOP: f64 = 58.0;
 const GAP: f64 = 14.0;
 /// Maximum width of a panel, pixels.
 const WIDEST: f64 = 480.0;
-/// Room below a panel whose words are turned, pixels.
-const TURNED: f64 = 108.0;
+/// Most room of words that are turned, and room below them for the name of the factor, pixels.
+const MAX_TURNED: f64 = 150.0;
+const BELOW_TURNED: f64 = 30.0;
 const LEVEL: f64 = 11.0;
 const TITLE: f64 = 12.0;
 /// Maximum number of drawn factors that fit on a page.
@@ -102,8 +103,17 @@ fn panels(shown: &Shown, factors: &[&EffectFactor]) -> Vec<Panel> {
 
 /// Room below a panel, pixels.
 fn below(factor: &EffectFactor, wide: f64) -> f64 {
-    let turned = words(factor) && turned(factor, wide);
-    if turned { TURNED } else { BELOW }
+    match words(factor) && turned(factor, wide) {
+        true => turned_room(factor) + BELOW_TURNED,
+        false => BELOW,
+    }
+}
+
+/// Room of the words of a factor that are turned, pixels: cut in their middle two of them may look alike.
+fn turned_room(factor: &EffectFactor) -> f64 {
+    let labels = factor.groups.groups.iter();
+    let widths = labels.map(|group| text_width(&group.label, LEVEL) + 1.0);
+    widths.fold(0.0, f64::max).min(MAX_TURNED)
 }
 
 /// A row for each level of each factor.
@@ -269,7 +279,7 @@ fn level_names(panel: &mut Panel, factor: &EffectFactor) {
             Label::new(place, &group.label).class("level")
         };
         let (label, room) = if turned(factor, wide) {
-            (label(4.0, 8.0).turned().end(), TURNED - 30.0)
+            (label(4.0, 8.0).turned().end(), turned_room(factor))
         } else {
             (label(0.0, 16.0).middle(), level_width(factor, wide) - 6.0)
         };
