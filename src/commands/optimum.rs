@@ -230,6 +230,12 @@ impl Execute for OptimumArgs {
                 let message = "the vehicle has no CVT";
                 bad_value("--vehicle", &self.car.vehicle, allowed, message, "").into()
             }
+            NoAnswer::TwoRanges => {
+                let allowed = "a vehicle whose CVT has one range";
+                let message = "the best ratio is sought in one range, and this box has two";
+                let hint = "compare controls by `levers`, or set transmission.cvt.ranges = \"one\"";
+                bad_value("--vehicle", &self.car.vehicle, allowed, message, hint).into()
+            }
         })?;
         let summary = OptimumSummary {
             manifest: Manifest::new(SCHEMA),

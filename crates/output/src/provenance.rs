@@ -309,7 +309,8 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
                 .collect()
         }
         Transmission::Cvt(cvt) => {
-            let [low, high] = [cvt.ratio.low, cvt.ratio.high].map(|r| cvt.final_drive.ratio * r);
+            let [low, high] =
+                [cvt.lowest_ratio(), cvt.ratio.high].map(|r| cvt.final_drive.ratio * r);
             let limits = [("lowest ratio", low), ("highest ratio", high)];
             let limits = limits.map(|(name, ratio)| straight(name.to_owned(), ratio));
             let target = |(share, name): &(f64, &str)| {

@@ -39,6 +39,7 @@ pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
         number "throttle", "-", "engine torque with accessories over full-load torque at that speed", r => r.throttle;
         count "gear", "", "gear; 0 is neutral", r => u64::from(r.gear), Scope::Manual;
         number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.belt_ratio, Scope::Cvt;
+        number "range_ratio", "-", "speed of the secondary over that into the final drive; 1 in the high range", r => r.range_ratio, Scope::Has(Component::RangeGear);
         number "overall_ratio", "-", "engine speed over wheel speed; empty at standstill", r => r.overall_ratio;
         number "primary_pressure_bar", "bar", "primary pulley pressure", r => bar(r.primary_pressure_pa), Scope::Cvt;
         number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => bar(r.secondary_pressure_pa), Scope::Cvt;
@@ -96,9 +97,7 @@ pub fn column(name: &str) -> Option<&'static TraceColumn> {
 
 /// The column of a component's loss power.
 pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
-    COLUMNS
-        .iter()
-        .find(|column| column.scope == Scope::Has(component))
+    column(component.columns().loss_w)
 }
 
 /// Writes a header and one line per row. `phases` are the names that belong to [`Row::phase`].

@@ -74,11 +74,10 @@ fn a_reader_that_closes_early_is_no_error() {
             }
             drop(out);
             let output = child.wait_with_output().unwrap();
-            assert_eq!(
-                (output.status.code(), stderr(&output).as_str()),
-                (Some(0), ""),
-                "{line}"
-            );
+            let messages = stderr(&output);
+            // A slow machine sees the progress of a long command.
+            let other = messages.lines().find(|line| !line.contains(" runs/s, "));
+            assert_eq!((output.status.code(), other), (Some(0), None), "{line}");
         }
     }
 }

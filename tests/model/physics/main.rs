@@ -50,3 +50,4 @@ mod targets;
 mod together;
 mod totals;
 mod torque_converter;
+mod two_ranges;

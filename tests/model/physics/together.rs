@@ -109,6 +109,21 @@ fn kinds_of_cars_may_be_mixed() {
     });
 }
 
+/// Cars with two ranges, whose changes come at different times, and one with another set.
+#[test]
+fn ranges_change_in_each_car_by_itself() {
+    let cycle = embedded("ece15").unwrap();
+    let cars = [
+        "1.82", "1.7", "1.6", "1.82", "1.5", "1.82", "1.3", "1.82", "1.4",
+    ];
+    let cars = cars.iter().enumerate().map(|(k, low)| {
+        let mass = format!("{}", 1150 + 40 * k);
+        let set = super::two_ranges::with(&[("low_ratio", low), ("road_load.mass_kg", &mass)]);
+        try_car("rover_216_cvt", &set).unwrap_or_else(|problems| panic!("{problems}"))
+    });
+    assert_alone(&cars.collect::<Vec<_>>(), &cycle, |_| COLD);
+}
+
 /// One car far too heavy for its engine, one whose numbers end in none: the others drive as they do alone.
 #[test]
 fn a_failed_run_keeps_to_itself() {

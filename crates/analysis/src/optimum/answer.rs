@@ -18,7 +18,7 @@ use super::line::{Line, LineFit, OUTSIDE, burnt, fit_line};
 use super::question::{
     Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
 };
-use super::{Bound, Clamp, Limits, Task, bound};
+use super::{Bound, Clamp, Limits, Task, bound, cvt};
 
 /// Gap between the driven path and the bound above which the bound is not tight. ASSUMED: half of what the dearest choice of a controller is worth.
 pub const TIGHT: f64 = 5e-3;
@@ -35,6 +35,9 @@ pub fn answer(of: &Question, from: &ReadFrom) -> Result<Answer, NoAnswer> {
     let ready = |law: &LawCar| law.setup.car(of.conditions.ambient_k);
     let mut cars: Vec<Car> = of.cars.iter().map(ready).collect();
     let first = cars.first().ok_or(NoAnswer::NoCvt)?;
+    if cvt(first).is_some_and(|cvt| cvt.ranges.is_some()) {
+        return Err(NoAnswer::TwoRanges);
+    }
     let trace = own_trace(first, of.cycle.trace_for(true));
     let steps: Vec<Step> = trace.steps(of.conditions.max_dt_s).collect();
     let least_speeds: Vec<f64> = of.least_speeds_rpm.iter().map(|n| rad_s(*n)).collect();

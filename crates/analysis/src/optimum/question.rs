@@ -170,4 +170,6 @@ pub enum NoAnswer {
     Line(Problems),
     /// The car has no CVT.
     NoCvt,
+    /// The box has two ranges, which the program does not choose.
+    TwoRanges,
 }

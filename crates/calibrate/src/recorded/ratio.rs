@@ -48,9 +48,10 @@ impl Ratios {
         let radius_m = setup.vehicle.road_load.base.wheel_radius_m;
         let belt = 3.6 * radius_m * 2.0 * PI / 60.0 / cvt.final_drive.ratio; // CL-10
         Ratios {
-            low: Some(cvt.ratio.low / belt),
+            low: Some(cvt.lowest_ratio() / belt),
             high: Some(cvt.ratio.high / belt),
-            belt: Some(belt),
+            // One of two ranges is not known from the speeds.
+            belt: cvt.ranges.is_none().then_some(belt),
         }
     }
 }

@@ -156,8 +156,8 @@ fn ratio(is_cvt: bool, output: &mut CarOutput) {
         output(
             "ratio_AT",
             "1",
-            |c| c.row.belt_ratio * final_ratio(c),
-            "ratio of the transmission: belt ratio times final drive",
+            |c| c.row.belt_ratio * c.row.range_ratio * final_ratio(c),
+            "ratio of the transmission: belt ratio times range and final drive",
         );
         output(
             "ratio_VAR",

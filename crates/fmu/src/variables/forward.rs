@@ -120,8 +120,8 @@ fn inside(output: &mut CvtOutput) {
     output(
         "ratio_AT",
         "1",
-        |c| c.turned.output.belt_ratio * c.cvt.final_drive.ratio,
-        "ratio of the transmission: belt ratio times final drive",
+        |c| c.turned.output.belt_ratio * c.turned.output.range_ratio * c.cvt.final_drive.ratio,
+        "ratio of the transmission: belt ratio times range and final drive",
     );
     output(
         "ratio_VAR",

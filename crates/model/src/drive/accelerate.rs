@@ -128,6 +128,8 @@ pub struct Accelerated {
 const LONGEST_S: f64 = 200.0;
 /// Change of speed in a second below which a car is at its top speed, m/s. ASSUMED, numerical.
 const STEADY_M_S: f64 = 0.02;
+/// Relative change of engine speed in a second below which it is there. ASSUMED, numerical.
+const STEADY_SHARE: f64 = 0.01;
 /// Steady driving before a begin at speed, s (AC-6).
 const BEFORE_S: f64 = 20.0;
 /// Bounds of the acceleration, m/s2: no road car is outside.
@@ -229,7 +231,8 @@ pub fn accelerate(car: &Car, asked: &FullThrottle) -> Accelerated {
         reached: false,
     };
     let (mut speed_m_s, mut distance_m, mut number) = (asked.from_m_s, 0.0, 0_u32);
-    let mut second = (0.0, speed_m_s);
+    let mut second = (0.0, speed_m_s, f64::NAN);
+    let mut engine_rad_s = 0.0;
     loop {
         let time_s = f64::from(number) * asked.dt_s;
         if speed_m_s >= asked.to_m_s && distance_m >= asked.distance_m {
@@ -241,11 +244,13 @@ pub fn accelerate(car: &Car, asked: &FullThrottle) -> Accelerated {
         }
         // At the top speed only the distance is waited for.
         if time_s >= second.0 + 1.0 {
-            let steady = speed_m_s - second.1 < STEADY_M_S && !pedal.is_shifting(time_s);
+            // A box that goes to a lower ratio gives the engine what the wheels lack.
+            let revs = (engine_rad_s / second.2 - 1.0).abs() < STEADY_SHARE;
+            let steady = speed_m_s - second.1 < STEADY_M_S && revs && !pedal.is_shifting(time_s);
             if steady && speed_m_s < asked.to_m_s && distance_m >= asked.distance_m {
                 break;
             }
-            second = (time_s, speed_m_s);
+            second = (time_s, speed_m_s, engine_rad_s);
         }
         found.shifts.extend(pedal.change(time_s, speed_m_s));
         number += 1;
@@ -253,6 +258,7 @@ pub fn accelerate(car: &Car, asked: &FullThrottle) -> Accelerated {
         let end_m_s = larger(2.0 * row.speed_m_s - speed_m_s, 0.0);
         distance_m += row.distance_m;
         speed_m_s = end_m_s;
+        engine_rad_s = row.engine_end_rad_s;
         found.steps.push(Instant {
             time_s: f64::from(number) * asked.dt_s,
             speed_m_s,
@@ -449,7 +455,9 @@ impl<'a> Pedal<'a> {
             return Some(control.low); // RC-6
         }
         let wheel_rad_s = step.motion.speed_m_s / self.car.road_load.wheel_radius_m;
-        let secondary_rad_s = larger(cvt.final_drive.ratio * wheel_rad_s, f64::MIN_POSITIVE);
+        let range = own.cvt.map_or(1.0, |cvt| cvt.shifting.range.ratio);
+        let behind_rad_s = cvt.final_drive.ratio * wheel_rad_s;
+        let secondary_rad_s = larger(range * behind_rad_s, f64::MIN_POSITIVE);
         let wanted = control.highest_rad_s / secondary_rad_s; // AC-2
         Some(larger(smaller(wanted, control.low), control.high))
     }

@@ -507,7 +507,7 @@ fn secondary_rad_s(car: &Car, cvt: &Cvt, row: &Row) -> f64 {
     if cvt.launch_behind {
         return row.engine_speed_rad_s * (1.0 - row.slip) / row.belt_ratio;
     }
-    cvt.final_drive.ratio * row.speed_m_s / car.road_load.wheel_radius_m
+    row.range_ratio * cvt.final_drive.ratio * row.speed_m_s / car.road_load.wheel_radius_m
 }
 
 /// Fuel mean effective pressure that the air in the cylinders burns, Pa (PX-3). An engine whose warm full-load line burns more is charged: its own

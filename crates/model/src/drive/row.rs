@@ -58,6 +58,8 @@ pub struct Row<R: Real = f64> {
     pub gear: R::PerLane<u8>,
     /// Belt ratio I = R_sec / R_pri (thesis eq. 5); NaN for a manual box.
     pub belt_ratio: R,
+    /// Speed of the secondary over that into the final drive (RG-1); 1 in a CVT with one range, NaN for a manual box.
+    pub range_ratio: R,
     /// Engine speed over wheel speed; NaN at standstill.
     pub overall_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
@@ -226,6 +228,7 @@ pub(super) fn row<R: Real>(
         throttle: d.throttle,
         gear: d.gear.clone(),
         belt_ratio: d.belt_ratio,
+        range_ratio: d.range_ratio,
         overall_ratio: rolls.select(engine_rad_s / wheel.wheel_rad_s, none),
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,

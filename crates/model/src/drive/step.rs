@@ -450,7 +450,7 @@ pub fn loss_heat_w<R: Real, T: Driveline<R>>(
     const BELT_HEAT: [Component; 8] = heating(HeatTo::Belt);
     const METAL_HEAT: [Component; 4] = heating(HeatTo::Metal);
     const COUPLING_HEAT: [Component; 1] = heating(HeatTo::Coupling);
-    const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
+    const SUMP_HEAT: [Component; 8] = heating(HeatTo::Sump);
     // First the sums of what goes the same way.
     let zero = car.belt_heat_share.splat(0.0);
     // Written out, so that the sums stay in registers.
@@ -462,7 +462,7 @@ pub fn loss_heat_w<R: Real, T: Driveline<R>>(
     let belt = sum!(BELT_HEAT: 0 1 2 3 4 5 6 7);
     let metal = sum!(METAL_HEAT: 0 1 2 3);
     let coupling = sum!(COUPLING_HEAT: 0);
-    let sump = sum!(SUMP_HEAT: 0 1 2 3 4 5 6);
+    let sump = sum!(SUMP_HEAT: 0 1 2 3 4 5 6 7);
     let mut power = [zero; NODES];
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = metal;

@@ -18,6 +18,8 @@ pub enum Part {
     Bands,
     /// CVT with a chain: as [`Part::Belt`].
     Chain,
+    /// CVT with two ranges.
+    Ranges,
     /// CVT whose belt is replaced by a measured map.
     BeltMap,
     /// Manual box, absent where a map replaces the box.
@@ -31,7 +33,7 @@ impl Part {
     pub const fn is_cvt(self) -> bool {
         matches!(
             self,
-            Part::Cvt | Part::Belt | Part::Bands | Part::Chain | Part::BeltMap
+            Part::Cvt | Part::Belt | Part::Bands | Part::Chain | Part::Ranges | Part::BeltMap
         )
     }
 }
@@ -60,7 +62,7 @@ pub enum LossGroup {
     Shafts,
     /// Belt.
     Belt,
-    /// Final drive of a CVT.
+    /// Final drive of a CVT, with the set for two ranges.
     FinalDrive,
     /// Teeth of a manual box, or the map of a whole box.
     Gears,
@@ -176,7 +178,8 @@ components! {
     BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Belt, Fill::Cvt(9), None, "wedging at pulley entry and exit";
     BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Belt, Fill::Cvt(10), None, "penetration into the deflected pulleys";
     BeltMap: "belt_map", "Belt map", BeltMap, Belt, Belt, Fill::Cvt(6), Some("belt"), "loss of the whole belt, from its measured map";
-    FinalDrive: "final_drive", "Final drive", Cvt, Sump, FinalDrive, Fill::Cvt(11), Some("final_drive"), "loss of the final drive of the CVT";
+    RangeGear: "range_gear", "Range gear", Ranges, Sump, FinalDrive, Fill::Cvt(11), None, "loss of the planetary set with two ranges behind the secondary";
+    FinalDrive: "final_drive", "Final drive", Cvt, Sump, FinalDrive, Fill::Cvt(12), Some("final_drive"), "loss of the final drive of the CVT";
     GearMesh: "gear_mesh", "Gear mesh", Manual, Sump, Gears, Fill::Manual(1), None, "gear mesh loss of the manual box, with its final drive";
     Bearing: "bearing", "Bearing", Manual, Metal, BearingsAndSeals, Fill::Manual(2), None, "bearing loss of the manual box";
     Churning: "churning", "Churning", Manual, Sump, Churning, Fill::Manual(3), None, "churning loss of the manual box";

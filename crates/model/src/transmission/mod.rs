@@ -209,7 +209,7 @@ impl Transmission {
     pub fn components(&self) -> Vec<Component> {
         let mapped = self.maps().map(|(component, _)| component.part());
         let kind = match self {
-            Transmission::Cvt(cvt) => BoxKind::of_belt(&cvt.belt),
+            Transmission::Cvt(cvt) => BoxKind::of_cvt(&cvt.belt, cvt.ranges.is_some()),
             Transmission::Manual(_) => BoxKind::Manual,
         };
         components(kind, &mapped.collect::<Vec<_>>())
@@ -247,23 +247,25 @@ impl Transmission {
 #[derive(Clone, Copy, PartialEq)]
 enum BoxKind {
     Manual,
-    Belt,
-    Chain,
+    Cvt { chain: bool, ranges: bool },
 }
 
 impl BoxKind {
-    /// A CVT by its belt.
-    fn of_belt(belt: &Belt) -> Self {
-        match belt.chain {
-            Some(_) => BoxKind::Chain,
-            None => BoxKind::Belt,
+    /// A CVT by its belt, and whether it has two ranges.
+    fn of_cvt(belt: &Belt, ranges: bool) -> Self {
+        BoxKind::Cvt {
+            chain: belt.chain.is_some(),
+            ranges,
         }
     }
 }
 
 /// Loss components of a CVT or of a manual box, of which the parts `mapped` are measured maps.
 fn components(kind: BoxKind, mapped: &[Part]) -> Vec<Component> {
-    let cvt = kind != BoxKind::Manual;
+    let (cvt, chain, ranges) = match kind {
+        BoxKind::Manual => (false, false, false),
+        BoxKind::Cvt { chain, ranges } => (true, chain, ranges),
+    };
     let [belt, whole] = [Part::BeltMap, Part::BoxMap].map(|part| mapped.contains(&part));
     Component::ALL
         .into_iter()
@@ -271,8 +273,9 @@ fn components(kind: BoxKind, mapped: &[Part]) -> Vec<Component> {
             Part::Coupling => true,
             Part::Cvt => cvt && !whole,
             Part::Belt => cvt && !whole && !belt,
-            Part::Bands => kind == BoxKind::Belt && !whole && !belt,
-            Part::Chain => kind == BoxKind::Chain && !whole && !belt,
+            Part::Bands => cvt && !chain && !whole && !belt,
+            Part::Chain => chain && !whole && !belt,
+            Part::Ranges => ranges && !whole,
             Part::BeltMap => cvt && !whole && belt,
             Part::Manual => !cvt && !whole,
             Part::BoxMap => whole,

@@ -84,6 +84,8 @@ pub struct StepOutput<R: Real = f64> {
     pub gear: R::PerLane<u8>,
     /// Belt ratio; NaN for a manual box.
     pub belt_ratio: R,
+    /// Speed of the secondary over that into the final drive; NaN for a manual box.
+    pub range_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
     pub primary_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
@@ -138,6 +140,7 @@ impl<R: Real> StepOutput<R> {
             throttle: zero,
             gear: R::per_lane(|_| 0),
             belt_ratio: none,
+            range_ratio: none,
             primary_pa: none,
             secondary_pa: none,
             clamp_cause: R::per_lane(|_| ClampCause::Law),

@@ -3,6 +3,7 @@
 use super::controller::ClampSignals;
 use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState, TurningPump};
+use super::range_gear::TurningRange;
 use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
 use crate::lubricant::{Lubricant, OilState};
@@ -133,6 +134,8 @@ pub(crate) struct Driveline<'a, R: Real = f64> {
     pub oil_k: R,
     /// The same oil.
     pub oil: OilState<R>,
+    /// Set behind the secondary, in a box with two ranges.
+    pub range: Option<TurningRange<'a, R>>,
     /// Losses that are not those of the models, if there are any.
     pub changes: Option<&'a LossChanges<R>>,
 }
@@ -182,6 +185,8 @@ pub(crate) struct Clamp<R: Real = f64> {
 pub(crate) struct PartTorques<R: Real = f64> {
     /// Loss of the final drive, at the secondary.
     pub final_drive: R,
+    /// Loss of the set with two ranges, at the secondary.
+    pub range_gear: R,
     /// At the secondary pulley, bearing and rings of its shaft with it: what the belt carries.
     pub secondary: R,
     /// Bearings of the pulley shafts, primary and secondary.
@@ -208,6 +213,7 @@ impl<R: Real> PartTorques<R> {
         let none = like.splat(0.0);
         PartTorques {
             final_drive: none,
+            range_gear: none,
             secondary: none,
             bearing: [none; 2],
             ring: [none; 2],
@@ -288,6 +294,7 @@ impl<R: Real> PartTorques<R> {
                 );
             }
         }
+        give(Component::RangeGear, Shaft::Output, self.range_gear);
         give(Component::FinalDrive, Shaft::Output, self.final_drive);
         give(Component::SealRing, Shaft::Primary, self.ring[0]);
         give(Component::SealRing, Shaft::Secondary, self.ring[1]);
@@ -338,6 +345,7 @@ impl<'a, R: Real> Driveline<'a, R> {
             force_log: oil_k.splat(0.0),
             oil_k,
             oil: state,
+            range: (cvt.ranges.as_ref()).map(|set| set.in_oil(set.in_high(), state.kinematic_m2_s)),
             changes: cvt.changes.as_deref(),
         }
     }
@@ -426,13 +434,14 @@ impl<'a, R: Real> Driveline<'a, R> {
         torques: &mut PartTorques<R>,
     ) {
         let speeds_rad_s = (primary_rad_s, secondary_rad_s);
-        torques.secondary =
-            self.through_nm(output_nm, drive, speeds_rad_s, clamp.pressure_pa, inside);
-        torques.final_drive = torques.secondary - output_nm;
+        let drive_nm = self.through_nm(output_nm, drive, speeds_rad_s, clamp.pressure_pa, inside);
+        torques.final_drive = drive_nm - output_nm;
+        torques.range_gear = self.range_nm(drive_nm, secondary_rad_s);
+        torques.secondary = drive_nm + torques.range_gear;
         self.turn_secondary(torques, clamp, secondary_rad_s);
     }
 
-    /// Torque into the final drive for one behind it, Nm.
+    /// Torque into the final drive for one behind it, both at the secondary, Nm.
     pub fn through_nm(
         &self,
         output_nm: R,
@@ -449,10 +458,27 @@ impl<'a, R: Real> Driveline<'a, R> {
             };
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
-                None => drive().input_nm(output_nm), // FD-2
+                None => match &self.range {
+                    Some(range) => {
+                        let ratio = range.ratio();
+                        drive().input_nm(output_nm * ratio) / ratio // FD-2, RG-1
+                    }
+                    None => drive().input_nm(output_nm), // FD-2
+                },
             }
         } else {
             output_nm
+        }
+    }
+
+    /// Loss of the set with two ranges for a torque into the final drive, both at the secondary, Nm.
+    pub fn range_nm(&self, drive_nm: R, secondary_rad_s: R) -> R {
+        match &self.range {
+            Some(range) if self.parts.final_drive && !self.is_mapped() => self.scaled(
+                Component::RangeGear,
+                range.loss_nm(drive_nm, secondary_rad_s),
+            ),
+            _ => drive_nm.splat(0.0),
         }
     }
 

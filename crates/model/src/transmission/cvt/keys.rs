@@ -7,6 +7,7 @@ use super::final_drive::FinalDrive;
 use super::floors::{Floors, PRESSURE, PressureKeys};
 use super::pulley_bearing::{PulleyBearing, PulleyBearingKeys};
 use super::pump::{Pump, PumpKeys};
+use super::range_gear::{RangeGear, RangeKeys};
 use super::seal_ring::{SealRing, SealRingKeys};
 use super::selector::{Selector, SelectorKeys};
 use super::shaft_drag::{ShaftDrag, ShaftKeys};
@@ -67,6 +68,10 @@ keys! {
             Choice::word("independent", "a valve for each cylinder: the line has the higher of the two pressures"),
             Choice::new("torque_sensor", "clamping and shifting pistons apart, the clamp by torque", TorqueSensorKeys::TABLE),
         ])), "hydraulic circuit of the cylinders", ["HC-1", "HC-2", "HC-3"];
+        ranges: or_word("one", options(&[
+            Choice::word("one", "the secondary turns with the final drive"),
+            Choice::new("two", "a planetary set with a low and a high range behind the secondary", RangeKeys::TABLE),
+        ])), "ranges of the box", ["RG-1"];
         launch: LAUNCH, "launch device: a friction clutch, or a torque converter";
         launch_at: words(&[
             Choice::word("input", "between engine and variator"),
@@ -106,6 +111,7 @@ keys! {
         belt_wedge: or(1.0, number(0.0, 5.0)), "factor on the loss of wedging; 1 is the model, 0 is without it", ["CV-7"];
         belt_penetration: or(1.0, number(0.0, 5.0)), "factor on the loss of penetration; 1 is the model, 0 is without it", ["CV-7"];
         belt_map: or(1.0, number(0.0, 5.0)), "factor on the belt's measured map, where there is one; 1 is the map, 0 is without loss", ["CV-7"];
+        range_gear: or(1.0, number(0.0, 5.0)), "factor on the loss of the set with two ranges; 1 is the model, 0 is without it", ["CV-7"];
         final_drive: or(1.0, number(0.0, 5.0)), "factor on the loss of the final drive; 1 is the model, 0 is without it", ["CV-7"];
         box_map: or(1.0, number(0.0, 5.0)), "factor on the map of the whole box, where there is one; 1 is the map, 0 is without loss", ["CV-7"];
     }
@@ -150,10 +156,15 @@ impl Cvt {
         let (floors, cap_pa) = Floors::from_values(&pressure);
         check_cap(s, pressure_table.as_deref(), cap_pa);
         let changes = maps(&s.table("maps"));
+        let ranges = RangeGear::from_values(s, &CVT.ranges, (ratio.low, ratio.high));
+        check_ranges(s, ranges.is_some(), changes.as_deref());
         let maps = changes
             .iter()
             .flat_map(|changes| Component::ALL.map(|c| changes.maps[c].as_ref().map(|_| c.part())));
-        let own = components(BoxKind::of_belt(&belt), &maps.flatten().collect::<Vec<_>>());
+        let own = components(
+            BoxKind::of_cvt(&belt, ranges.is_some()),
+            &maps.flatten().collect::<Vec<_>>(),
+        );
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let launch = coupling::from_values(s, &CVT.launch, 5.0);
         let mut cvt = Cvt {
@@ -171,6 +182,7 @@ impl Cvt {
             clutch_drag: ClutchDrag::from_values(&s.table("reverse_clutch")),
             pulley_bearing: PulleyBearing::from_values(&s.table("pulley_bearing")),
             seal_ring: SealRing::from_values(&s.table("seal_ring")),
+            ranges,
             ratio,
             clamp,
             pressure_table,
@@ -212,6 +224,19 @@ fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossC
         );
     }
     behind
+}
+
+/// A map of the whole box has the ratio of the belt alone, and no range.
+fn check_ranges<V: Values>(s: &V, two: bool, changes: Option<&LossChanges>) {
+    let whole_box = |changes: &LossChanges| changes.maps[Component::BoxMap].is_some();
+    if two && changes.is_some_and(whole_box) {
+        s.complain(
+            CVT.ranges.name,
+            "one where maps.box is given",
+            "the map of a whole box has no column of the range",
+            "leave maps.box out, or remove ranges",
+        );
+    }
 }
 
 /// The belt runs at both ends of the ratio, and the pulleys do not run into each other.

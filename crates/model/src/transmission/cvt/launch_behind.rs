@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | LO-1 | w_p = w_e; w_s = w_e (1 - s)/I, and w_fd = i_fd w_wheel behind the clutch | derived: layout; a starting clutch on the driven pulley's shaft, as in Honda's Multi Matic |
+//! | LO-1 | w_p = w_e; w_s = w_e (1 - s)/I, and w_fd = i i_fd w_wheel behind the clutch, i of the range (RG-1) | derived: layout; a starting clutch on the driven pulley's shaft, as in Honda's Multi Matic |
 //! | LO-2 | LC-1 to LC-6 with T' = T_fd (1 - s)/I in place of T and w' = I w_fd/(1 - s) in place of the speed of the input shaft | derived: torque and speeds of the clutch seen from the engine through the variator; so it locks and lets go where a clutch at the input does |
 //! | LO-3 | T' >= creep below idle speed, >= -share (drag + accessories + pump + shaft + T_v) above it, T' <= full load - accessories - pump - shaft - T_v; T_v losses of pulley shafts, belt and reverse clutch at the primary | derived: CV-3 and CV-4 with what lies between clutch and engine |
 //! | LO-4 | at rest w_e = idle speed, T' the creep torque: pulleys, belt and pump turn, and the ratio goes to low by RC-4 and RC-5 | derived |
@@ -101,13 +101,15 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         // All runs of a group are at rest together.
         if self.secondary_rad_s.gt(0.0).any() {
             let speeds = (over_rad_s, self.secondary_rad_s);
-            let secondary =
+            let drive_nm =
                 self.line
                     .through_nm(g.output_nm, || self.drive, speeds, g.pressure_pa, inside);
+            let range_gear = self.line.range_nm(drive_nm, self.secondary_rad_s);
             return PartTorques {
-                final_drive: secondary - g.output_nm,
-                secondary,
-                ..PartTorques::none(secondary)
+                final_drive: drive_nm - g.output_nm,
+                range_gear,
+                secondary: drive_nm + range_gear,
+                ..PartTorques::none(drive_nm)
             };
         }
         let idle_rad_s = self.input.engine.idle_rad_s();

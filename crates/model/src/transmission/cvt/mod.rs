@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | CV-1 | w_s = i_fd w_wheel, w_p = I w_s / (1 - slip) | derived |
+//! | CV-1 | w_s = i i_fd w_wheel, w_p = I w_s / (1 - slip); i = 1 without ranges (RG-1) | derived |
 //! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag + T_bearing + T_ring; the belt carries T_s = T_FD + bearing and rings of the secondary | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
 //! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
@@ -19,6 +19,7 @@ pub mod controller;
 pub mod final_drive;
 pub mod pulley_bearing;
 pub mod pump;
+pub mod range_gear;
 pub mod seal_ring;
 pub mod shaft_drag;
 pub mod variator;
@@ -47,6 +48,7 @@ use self::final_drive::FinalDrive;
 use self::floors::Floors;
 use self::pulley_bearing::PulleyBearing;
 use self::pump::Pump;
+use self::range_gear::{InRange, RangeGear};
 use self::seal_ring::SealRing;
 use self::selector::{Selector, SelectorSignals};
 use self::shaft_drag::ShaftDrag;
@@ -128,6 +130,8 @@ pub struct Cvt<R: Real = f64> {
     pub pulley_bearing: PulleyBearing<R>,
     /// Rings that seal the oil feed of a pulley.
     pub seal_ring: SealRing<R>,
+    /// Planetary set behind the secondary; `None` in a box with one range.
+    pub ranges: Option<Box<RangeGear<R>>>,
     /// Ratio control.
     pub ratio: RatioControl<R>,
     /// Clamp law.
@@ -186,7 +190,7 @@ pub struct Hold<R: Real = f64> {
 }
 
 /// State of the ratio control after the step before.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shifting<R: Real = f64> {
     /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
     pub direction: R::PerLane<i8>,
@@ -194,6 +198,8 @@ pub struct Shifting<R: Real = f64> {
     pub share: R,
     /// Belt ratio at the end of the step; that of the belt is the mean over it (RC-17).
     pub ratio: R,
+    /// Range at the end of the step, and the one that is wanted (RG-2).
+    pub range: InRange<R>,
 }
 
 impl<R: Real> CvtState<R> {
@@ -207,6 +213,7 @@ impl<R: Real> CvtState<R> {
                 direction: R::per_lane(|_| 0),
                 share: like.splat(0.0),
                 ratio,
+                range: InRange::only(like),
             },
             hold: None,
         }
@@ -294,8 +301,16 @@ impl<R: Real> Cvt<R> {
         (wheel, [_, last]): (&WheelDemand<R>, [f64; 2]),
         engine_rad_s: R,
     ) -> [R; 2] {
-        let lowest_rad_s = self.ratio.low * self.final_drive.ratio * wheel.wheel_rad_s * last;
+        let lowest_rad_s = self.lowest_ratio() * self.final_drive.ratio * wheel.wheel_rad_s * last;
         [engine_rad_s, engine_rad_s.min(lowest_rad_s)]
+    }
+
+    /// Speed of the primary over that into the final drive in the lowest ratio of the box.
+    pub fn lowest_ratio(&self) -> R {
+        match &self.ranges {
+            Some(set) => self.ratio.low * set.low,
+            None => self.ratio.low,
+        }
     }
 
     /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
@@ -334,13 +349,13 @@ impl<R: Real> Cvt<R> {
         &self,
         input: &StepInput<P, R>,
     ) -> (CvtState<R>, DrivelineState<R>) {
-        let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
-        let zero = secondary.splat(0.0);
+        let behind = self.final_drive.ratio * input.wheel.wheel_rad_s;
+        let zero = behind.splat(0.0);
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             begins: None,
-            secondary_rad_s: secondary,
-            primary_rad_s: self.ratio.low * secondary,
+            secondary_rad_s: behind,
+            primary_rad_s: self.ratio.low * behind,
             speed_m_s: input.wheel.speed_m_s,
             power_w: input.wheel.power_w,
             share,
@@ -348,11 +363,7 @@ impl<R: Real> Cvt<R> {
                 input.engine,
                 input.wheel.power_w / self.ratio.route_efficiency,
             ),
-            mapped_rad_s: self.mapped_rad_s(
-                input.engine,
-                (input.wheel.speed_m_s, secondary),
-                share,
-            ),
+            mapped_rad_s: self.mapped_rad_s(input.engine, (input.wheel.speed_m_s, behind), share),
             cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
             flow_down_per_s: zero,
@@ -363,14 +374,23 @@ impl<R: Real> Cvt<R> {
             free_up_to_rad_s: zero,
             dt_s: input.dt_s,
         };
-        let rolls = secondary.gt(0.0);
-        let target = self.ratio.target_rad_s(&demand) / secondary;
+        let rolls = behind.gt(0.0);
+        let mut target = self.ratio.target_rad_s(&demand) / behind;
+        let (mut secondary, mut range) = (behind, InRange::only(zero));
+        if let Some(set) = &self.ranges {
+            range = match rolls.any() {
+                true => set.rolling(target),
+                false => set.in_low(),
+            };
+            (secondary, target) = (range.ratio * behind, target / range.ratio); // RG-1
+        }
         let in_range = target.clamp(self.ratio.high, self.ratio.low);
         let ratio = rolls.select(in_range, self.ratio.low);
         let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
         let mut own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
         own.shifting.share = share;
+        own.shifting.range = range;
         let driveline = DrivelineState {
             gear: R::per_lane(|_| 0),
             engine_rad_s: primary.max(idle),
@@ -379,7 +399,7 @@ impl<R: Real> Cvt<R> {
             coupled: primary.gt(idle),
             closing_rad_s: zero,
             lowered_s: zero,
-            stood: zero.ge(secondary).all(),
+            stood: zero.ge(behind).all(),
             rested_s: 0.0,
         };
         (own, driveline)

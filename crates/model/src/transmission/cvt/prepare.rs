@@ -4,6 +4,7 @@ use super::controller::{FREE_OVER_IDLE, Moment, RatioDemand, Shifted, direction_
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
 use super::evaluate::Step;
 use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
+use super::range_gear::RangeStep;
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
 use crate::lubricant::OilState;
@@ -59,6 +60,8 @@ struct Shift<R: Real> {
     primaries: [R; 2],
     /// True where a launch clutch that slips locks within the step (RC-6).
     locks: R::Mask,
+    /// Set behind the secondary, in a box with two ranges.
+    range: Option<RangeStep<R>>,
 }
 
 /// Share of the power of full load at a target up to which the route at full load (RC-3) is surely not above it, with a margin for what three
@@ -98,8 +101,14 @@ fn shift<P: PrimeMover<R>, R: Real>(
         powers_w[1] / engine.rated_w(),
     ];
     let share = cvt.ratio.filtered_share(kept.share, asked, input.dt_s);
-    let secondary_rad_s = cvt.final_drive.ratio * wheel.wheel_rad_s;
-    let primary_rad_s = cvt.primary_rad_s(kept.ratio, secondary_rad_s, past);
+    let behind_rad_s = cvt.final_drive.ratio * wheel.wheel_rad_s;
+    let sets = cvt.ranges.as_deref();
+    // The range before the step.
+    let in_range = |behind: R| match sets {
+        Some(_) => kept.range.ratio * behind, // RG-1
+        None => behind,
+    };
+    let primary_rad_s = cvt.primary_rad_s(kept.ratio, in_range(behind_rad_s), past);
     let zero = share.splat(0.0);
     if zero.ge(primary_rad_s).all() {
         return Shift {
@@ -111,16 +120,19 @@ fn shift<P: PrimeMover<R>, R: Real>(
                 share,
                 direction: kept.direction.clone(),
                 ratio: kept.ratio,
+                range: sets.map_or(kept.range, |set| set.in_low()),
             },
             primaries: [zero; 2],
             locks: zero.splat_mask(false),
+            range: sets.map(|set| set.step(&set.in_low(), zero)),
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let most = route.asked.most_flow_m3_s;
     let speeds_m_s = wheel.end_speeds_m_s(input.dt_s);
     let of_mean = wheel.ends_over_mean(input.dt_s);
-    let secondaries = [secondary_rad_s * of_mean[0], secondary_rad_s * of_mean[1]];
+    let behind = [behind_rad_s * of_mean[0], behind_rad_s * of_mean[1]];
+    let mut secondaries = behind.map(in_range);
     let mapped =
         |k: usize, share: R| cvt.mapped_rad_s(engine, (speeds_m_s[k], secondaries[k]), share);
     let efficiency = route.asked.efficiency;
@@ -154,6 +166,31 @@ fn shift<P: PrimeMover<R>, R: Real>(
         mapped_rad_s: mapped(0, first_share),
     };
     begins.full_load_rad_s = full_load_rad_s(cvt, engine, &demand.at(&begins), efficiency);
+    let (mut range, mut next) = (None, kept.range);
+    if let Some(set) = sets {
+        let targets = match held {
+            Some(hold) if hold.paced => Some(secondaries.map(|w| hold.ratio * w)),
+            Some(_) => None, // RC-12
+            None => Some([
+                cvt.ratio.target_rad_s(&demand.at(&begins)),
+                cvt.ratio.target_rad_s(&demand),
+            ]),
+        };
+        let step = match targets {
+            Some(targets) => {
+                let step;
+                (step, next) =
+                    set.driven(&kept.range, (targets, behind), demand.coupled, input.dt_s);
+                step
+            }
+            None => set.step(&kept.range, zero + input.dt_s),
+        };
+        next.ratio = step.ends[1];
+        secondaries = [step.ends[0] * behind[0], step.ends[1] * behind[1]]; // RG-1
+        demand.secondary_rad_s = secondaries[1];
+        demand.primary_rad_s = cvt.primary_rad_s(kept.ratio, step.mean * behind_rad_s, past);
+        range = Some(step);
+    }
     demand.begins = Some(begins);
     if !demand.coupled.all() {
         demand.locks_at = locks_at(past.engine_rad_s / kept.ratio, secondaries);
@@ -185,9 +222,11 @@ fn shift<P: PrimeMover<R>, R: Real>(
             direction: direction_after(made.last * per_s, &kept.direction),
             share,
             ratio: made.end,
+            range: next,
         },
         primaries: [kept.ratio * secondaries[0], made.end * secondaries[1]],
         locks: !demand.coupled & demand.locks_at.lt(1.0),
+        range,
     }
 }
 
@@ -276,7 +315,11 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
         belt.move_to(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
-    let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
+    let behind_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
+    let secondary_rad_s = match &shift.range {
+        Some(range) => range.mean * behind_rad_s, // RG-1
+        None => behind_rad_s,
+    };
     let signals = LockSignals {
         speed_m_s: input.wheel.speed_m_s,
         sump_k,
@@ -295,12 +338,7 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
     let films = friction.film_powers(friction.film_loads(eta_belt, sliding));
     Step {
         // The demand of the wheels decides the friction of the teeth (GM-2).
-        drive: final_drive(
-            cvt,
-            secondary_rad_s,
-            input.wheel.power_w / secondary_rad_s,
-            sump,
-        ),
+        drive: final_drive(cvt, behind_rad_s, input.wheel.power_w / behind_rad_s, sump),
         line: Driveline {
             cvt,
             at,
@@ -318,6 +356,9 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
             ),
             oil_k: sump_k,
             oil: sump,
+            range: (cvt.ranges.as_deref())
+                .zip(shift.range)
+                .map(|(set, step)| set.in_oil(step, nu_sump)),
             changes: cvt.changes.as_deref(),
         },
         input,

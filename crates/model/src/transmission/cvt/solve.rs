@@ -326,7 +326,7 @@ impl<R: Real> Work<R> {
 /// The engine is off.
 fn engine_off<P: PrimeMover<R>, R: Real>(
     input: &StepInput<P, R>,
-    ratio: R,
+    (ratio, range_ratio): (R, R),
     past: &mut DrivelineState<R>,
     rest: &mut StepOutput<R>,
 ) {
@@ -337,6 +337,7 @@ fn engine_off<P: PrimeMover<R>, R: Real>(
     past.coupled = none.splat_mask(false);
     past.closing_rad_s = none;
     rest.belt_ratio = ratio;
+    rest.range_ratio = range_ratio;
     rest.secondary_pa = none;
     rest.primary_pa = none;
     rest.slip = none;
@@ -362,7 +363,10 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     let before = belt.geometry;
     let hold = hold.take();
     if input.engine_off {
-        return engine_off(input, shifting.ratio, past, output);
+        if let Some(set) = &cvt.ranges {
+            shifting.range = set.in_low(); // RG-2
+        }
+        return engine_off(input, (shifting.ratio, shifting.range.ratio), past, output);
     }
     let mut begun = None;
     let mut efficiency = cvt.ratio.route_efficiency;

@@ -109,6 +109,15 @@ fn counts<R: Real>(number: R) -> R::PerLane<u16> {
     R::per_lane(|lane| number.lane(lane) as u16)
 }
 
+/// Speed of the secondary over that into the final drive in the step.
+#[physics]
+fn range_ratio<P: PrimeMover<R>, R: Real>(step: &Step<P, R>) -> R {
+    match &step.line.range {
+        Some(range) => range.ratio(),
+        None => step.secondary_rad_s.splat(1.0),
+    }
+}
+
 /// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn. Fills an output at rest.
 #[physics]
 #[inline(never)]
@@ -148,6 +157,7 @@ fn rest<P: PrimeMover<R>, R: Real>(
     output.shaft_nm = at.torques.flywheel_nm(side.engine_nm);
     output.throttle = at.throttle;
     output.belt_ratio = ratio;
+    output.range_ratio = range_ratio(step);
     output.primary_pa = at.primary_pa;
     output.secondary_pa = at.pressure_pa;
     output.clamp_cause = causes(at.clamp_cause);
@@ -250,6 +260,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.shaft_nm = p.flywheel_nm;
     output.throttle = p.throttle;
     output.belt_ratio = ratio;
+    output.range_ratio = range_ratio(step);
     output.primary_pa = (step.line.cvt).primary_pa(p.torques.belt.holding_n);
     output.secondary_pa = g.pressure_pa;
     output.clamp_cause = causes(p.clamp_cause);
@@ -364,7 +375,11 @@ fn solve_flags<P: PrimeMover<R>, R: Real>(
     output.flag(Flags::NOT_CONVERGED, !converged(outcome.residual));
     if past.stood && !rests {
         let in_low = 0.99 * step.line.cvt.ratio.low;
-        output.flag(Flags::LAUNCH_NOT_IN_LOW, in_low.gt(ratio));
+        let mut not_low = in_low.gt(ratio);
+        if let (Some(set), Some(range)) = (&step.line.cvt.ranges, &step.line.range) {
+            not_low = not_low | set.low.gt(range.ratio());
+        }
+        output.flag(Flags::LAUNCH_NOT_IN_LOW, not_low);
     }
     let share = (p.flywheel_nm + step.input.engine.accessories_nm(we)) / p.full_load_nm;
     let inside = p.inside_maps & table_holds(step, p.torques.secondary, step.secondary_rad_s);
@@ -405,7 +420,14 @@ fn common_flags<P: PrimeMover<R>, R: Real>(
     let ratio = step.line.at.geometry.ratio;
     let limits = &step.line.cvt.ratio;
     output.flag(Flags::OUTSIDE_VALIDITY, !valid);
-    let at_end = (limits.high * JUST_ABOVE).ge(ratio) | ratio.ge(limits.low * JUST_BELOW);
+    let mut at_high = (limits.high * JUST_ABOVE).ge(ratio);
+    let mut at_low = ratio.ge(limits.low * JUST_BELOW);
+    if let (Some(set), Some(range)) = (&step.line.cvt.ranges, &step.line.range) {
+        // Elsewhere the other range goes on.
+        at_high = at_high & range.ratio().le(1.0);
+        at_low = at_low & range.ratio().ge(set.low);
+    }
+    let at_end = at_high | at_low;
     output.flag(Flags::RATIO_LIMIT, at_end);
     let most_pa = (step.line.cvt).most_primary_pa(output.secondary_pa);
     let short = output.primary_pa.gt(most_pa * JUST_ABOVE);

@@ -210,7 +210,7 @@ impl Fill {
     /// The fill of a component, the same in every picture: within a car lightness rises in the order of the power flow.
     pub fn component(component: Component) -> Self {
         let (anchors, index, last) = match component.fill() {
-            Place::Cvt(place) => (RAMP, usize::from(place), 11.0),
+            Place::Cvt(place) => (RAMP, usize::from(place), 12.0),
             Place::Manual(place) => (WARM, usize::from(place), 4.0),
         };
         Fill::hatched(anchors, index as f64 / last, index)
