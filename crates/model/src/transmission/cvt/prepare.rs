@@ -168,22 +168,25 @@ fn shift<P: PrimeMover<R>, R: Real>(
     begins.full_load_rad_s = full_load_rad_s(cvt, engine, &demand.at(&begins), efficiency);
     let (mut range, mut next) = (None, kept.range);
     if let Some(set) = sets {
-        let targets = match held {
-            Some(hold) if hold.paced => Some(secondaries.map(|w| hold.ratio * w)),
-            Some(_) => None, // RC-12
-            None => Some([
-                cvt.ratio.target_rad_s(&demand.at(&begins)),
-                cvt.ratio.target_rad_s(&demand),
-            ]),
-        };
-        let step = match targets {
-            Some(targets) => {
+        let step = match held {
+            Some(hold) => {
+                let step = set.step(&kept.range, zero + input.dt_s);
+                if hold.paced {
+                    let (asked, one) = (hold.ratio * step.ends[1], zero.splat(1.0));
+                    next.low = set.wants_low(&kept.range, asked, one, demand.coupled);
+                }
+                step
+            }
+            None => {
+                let targets = [
+                    cvt.ratio.target_rad_s(&demand.at(&begins)),
+                    cvt.ratio.target_rad_s(&demand),
+                ];
                 let step;
                 (step, next) =
                     set.driven(&kept.range, (targets, behind), demand.coupled, input.dt_s);
                 step
             }
-            None => set.step(&kept.range, zero + input.dt_s),
         };
         next.ratio = step.ends[1];
         secondaries = [step.ends[0] * behind[0], step.ends[1] * behind[1]]; // RG-1

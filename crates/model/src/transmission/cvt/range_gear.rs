@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | RG-1 | w_s = i w_fd; i = i_low in the low range, 1 in the high one | derived: layout of Jatco's CVT7, a set with low brake and high clutch between pulleys and differential |
-//! | RG-2 | with I* i the target speed over w_fd: to the high range where I* i < I_up i_low, with the coupling locked, back where I* i > I_down; target and w_fd linear within a step; low at rest; a held ratio (RC-12) keeps the range, a paced one (RC-15) counts with the i before the step | ASSUMED: I_up the highest ratio of the belt, so that the step ends in the middle of its range; I_down above I_up i_low by a hysteresis |
+//! | RG-2 | with I* i the target speed over w_fd: to the high range where I* i < I_up i_low, with the coupling locked, back where I* i > I_down; target and w_fd linear within a step; low at rest; a held ratio (RC-12) keeps the range, of a paced one (RC-15) I i at the end of a step decides what the next one does | ASSUMED: I_up the highest ratio of the belt, so that the step ends in the middle of its range; I_down above I_up i_low by a hysteresis |
 //! | RG-3 | while the range changes ln i goes to its new value at the rate ln i_low/t, and the belt follows its target the other way, within RC-4 and RC-5 | ASSUMED: t 0.4 to 1.2 s; an exact coordination has the engine turn on as without a step |
 //! | RG-4 | P_s = f P_fd + RG-5; engaged in low f = 1 + e driving, 1/(1 + e) dragged, in high 1; changing f = i driving, i/i_low dragged; the mean over the step by time | derived: of the two clutches the one of the high range carries a driving torque while both slip, that of the low range a dragging one; e 0.5 to 1.5 % ASSUMED |
 //! | RG-5 | drag of the open one at w_fd: CD-1, CD-2 | derived: with the ring driven and the sun braked, an open clutch or brake slips at the speed of the carrier |
@@ -95,7 +95,13 @@ impl<R: Real> RangeGear<R> {
     }
 
     /// True where the low range is wanted for a target speed with the final drive at a speed, rad/s, after a range (RG-2).
-    fn wants_low(&self, now: &InRange<R>, target: R, behind: R, coupled: R::Mask) -> R::Mask {
+    pub(super) fn wants_low(
+        &self,
+        now: &InRange<R>,
+        target: R,
+        behind: R,
+        coupled: R::Mask,
+    ) -> R::Mask {
         let up = coupled & (self.up_ratio * self.low * behind).gt(target);
         (now.low & !up) | target.gt(self.down_ratio * behind)
     }
