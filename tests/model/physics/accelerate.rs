@@ -343,6 +343,12 @@ fn ends_of_a_drive() {
         },
     );
     assert!(kept.shifts.is_empty() && kept.steps.iter().all(|step| step.row.gear == 4));
+    for step in &kept.steps {
+        assert!((step.row.time_s - step.time_s).abs() < 1e-9);
+    }
+    // The speed of the begin is there at time 0, and no step is driven for it.
+    let none = driven(&setup, &asked(&setup, 80.0, 80.0));
+    assert!(none.reached && none.steps.is_empty() && time_s(&none, 80.0) <= 0.0);
     let changes = driven(
         &setup,
         &FullThrottle {
@@ -383,6 +389,89 @@ fn ends_of_a_drive() {
         .expect("a row");
     assert!(after.time_s - 0.1 < at_s && at_s <= after.time_s);
     assert!(speed_m_s <= after.speed_m_s && mile.at_distance(1e6).is_none());
+}
+
+/// Truth: AC-3. On a slope of 0.5 with mu 0.2 the grip, mu m g cos a, is less than the pull of the slope, m g sin a: the car stays where it is, which is its
+/// top speed, and the drive ends after the second that shows it.
+#[test]
+fn a_car_that_cannot_pull_away_ends_its_drive() {
+    let setup = car("rover_216_cvt", &[]);
+    let grip = Grip {
+        mu: 0.2,
+        driven: Driven::All,
+        ..Grip::default()
+    };
+    let stuck = driven(
+        &setup,
+        &FullThrottle {
+            grip: Some(grip),
+            grade: 0.5,
+            dt_s: 0.1,
+            ..asked(&setup, 0.0, 50.0)
+        },
+    );
+    assert!(!stuck.reached && stuck.highest_m_s() <= 0.0);
+    let last = stuck.steps.last().expect("steps");
+    assert!(
+        last.distance_m <= 0.0 && last.time_s <= 1.0 + 1e-9,
+        "{} s",
+        last.time_s
+    );
+}
+
+/// Truth: RC-4. A CVT that drives at 60 km/h goes down when the pedal does, no faster than its rate: ln I changes by at most rate dt from step to step.
+#[test]
+fn a_kick_down_keeps_to_the_rate_of_the_ratio() {
+    let setup = car("civic_20_cvt", &[]);
+    let Transmission::Cvt(cvt) = setup.transmission() else {
+        panic!("a CVT")
+    };
+    let most = cvt.ratio.down_per_s;
+    let found = driven(&setup, &asked(&setup, 60.0, 100.0));
+    let ratios: Vec<f64> = found.steps.iter().map(|step| step.row.belt_ratio).collect();
+    let rates: Vec<f64> = ratios
+        .windows(2)
+        .map(|two| (two[1] / two[0]).ln() / 0.02)
+        .collect();
+    let fastest = rates.iter().copied().fold(0.0, f64::max);
+    let largest = ratios.iter().copied().fold(0.0, f64::max);
+    println!(
+        "down by {} at up to {fastest}/s of {most}/s",
+        largest / ratios[0]
+    );
+    assert!(
+        fastest <= most * (1.0 + 1e-9) && fastest > 0.5 * most,
+        "{fastest} {most}"
+    );
+    assert!(largest > 1.3 * ratios[0], "{largest} {}", ratios[0]);
+}
+
+/// Truth: AC-4 in closed form. With a full load a - b w the gear above, whose ratio is less by a factor f, has the same torque at the wheels where
+/// f (a - b f w) = a - b w, w = a/(b (1 + f)): each change begins with the first step from there, to a thousandth of the highest speed.
+#[test]
+fn val_a_manual_box_changes_where_the_gear_above_pulls_as_much() {
+    let setup = car("civic_20_6mt", &["engine.full_load=[[600,242],[6700,59]]"]);
+    let (engine, r) = (setup.engine(), setup.road_load.base.wheel_radius_m);
+    let found = driven(&setup, &asked(&setup, 0.0, 130.0));
+    assert!(found.shifts.len() >= 2, "{:?}", found.shifts);
+    let per_rpm = (242.0 - 59.0) / 6100.0;
+    let none_rpm = 600.0 + 242.0 / per_rpm;
+    for (time_s, gear) in &found.shifts {
+        let [here, above] =
+            [usize::from(*gear) - 1, usize::from(*gear)].map(|k| overall(&setup, k));
+        let rad_s = none_rpm / (1.0 + above / here) * std::f64::consts::PI / 30.0;
+        let before = found
+            .steps
+            .iter()
+            .filter(|step| step.time_s <= time_s + 1e-9);
+        let speeds: Vec<f64> = before.map(|step| step.speed_m_s / r * here).collect();
+        let [.., earlier, now] = speeds[..] else {
+            panic!("gear {gear} at the begin")
+        };
+        println!("to gear {gear} at {now} rad/s, by hand {rad_s}");
+        assert!(now >= rad_s * (1.0 - 1e-9) && earlier <= rad_s + 1e-3 * engine.highest_rad_s);
+        assert!(rad_s < 0.95 * engine.highest_rad_s);
+    }
 }
 
 fn overall(setup: &Setup, gear: usize) -> f64 {

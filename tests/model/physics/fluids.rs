@@ -140,6 +140,45 @@ fn val_a_fit_finds_the_numbers_of_its_table() {
     }
 }
 
+/// Truth: FR-1 with stated numbers, without rounding. Wherever the film begins among the rows, how fast it does and however little it changes, the fit finds these
+/// numbers again.
+#[test]
+fn val_a_fit_finds_any_curve() {
+    let of = BenchUse {
+        contact: Contact::MacroSlip,
+        test: "mtm",
+        pressure_pa: 100e6,
+        slip: 0.005,
+    };
+    let (boundary, eta) = (0.12, 0.01);
+    let speeds: Vec<f64> = (0..12)
+        .map(|k| 0.005 * 200_f64.powf(f64::from(k) / 11.0))
+        .collect();
+    for film in [0.03, 0.08, 0.1, 0.15] {
+        for place in [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8] {
+            for exponent in [0.4, 0.5, 0.6, 1.0, 1.5, 3.0] {
+                let half = eta * 0.005 * 200_f64.powf(place);
+                let row = |v: &f64| {
+                    let z = (eta * v / half).powf(exponent);
+                    BenchRow {
+                        sliding_m_s: *v,
+                        pressure_pa: f64::NAN,
+                        temp_k: 80.0 + ZERO,
+                        friction: (boundary + z * film) / (1.0 + z),
+                        sd: 0.0,
+                    }
+                };
+                let rows: Vec<BenchRow> = speeds.iter().map(row).collect();
+                let found = bench(&of, &rows, &[eta; 12]).unwrap().curve;
+                close(found.boundary, boundary, 1e-3);
+                close(found.film, film, 1e-3);
+                close(found.half_n_m, half, 1e-3);
+                close(found.exponent, exponent, 1e-3);
+            }
+        }
+    }
+}
+
 fn with(oil: &str, set: &[&str]) -> Setup {
     let options = Options {
         lubricant: Some(oil.to_owned()),
@@ -371,6 +410,32 @@ fn a_place_moves_within_the_spread() {
     assert_eq!((elements.segment, elements.capacity), (0.125, 0.09));
 }
 
+/// Truth: FR-6 and FR-8. Where the file says nothing the spread of a contact is that of its table, and `place` moves the friction by it.
+#[test]
+fn a_place_moves_within_the_spread_of_a_table() {
+    let of = |set: &[&str]| with(&example("fluid_a"), set).oils().0.clone();
+    let middle = of(&[]);
+    for (contact, name) in [
+        (Contact::Bands, "bands"),
+        (Contact::MacroSlip, "macro_slip"),
+    ] {
+        let mut benches = middle.benches.iter();
+        let spread = benches
+            .find(|bench| bench.contact == contact)
+            .unwrap()
+            .spread;
+        assert!((0.02..0.2).contains(&spread), "{name}: {spread}");
+        for place in [-1.0, 1.0] {
+            let moved = of(&[&format!("lubricant.friction.{name}.place={place}")]).friction;
+            let (moved, own) = match contact {
+                Contact::Bands => (moved.band, middle.friction.band),
+                _ => (moved.capacity, middle.friction.capacity),
+            };
+            close(moved, (1.0 + place * spread) * own, 1e-12);
+        }
+    }
+}
+
 /// Derived: GM-2 times X_L; the teeth of a fluid with 0.8 lose 0.8 as much (no mesh is at its bound), and all else stays.
 #[test]
 fn the_gear_factor_of_a_fluid_scales_the_teeth() {
@@ -474,6 +539,17 @@ fn tables_are_doubted() {
     let found = of(Contact::MicroSlip, &series(100.0, 0.02)).unwrap();
     assert_eq!(found.doubts.len(), 1, "{:?}", found.doubts);
     assert!(of(Contact::MicroSlip, &series(100.0, 0.02)[..2]).is_err());
+    // Temperatures 5 K apart are two (k is fitted over them), and so are their series: here friction falls from one to the other alone.
+    let level = |degc: f64, mu: f64, speeds: [f64; 2]| speeds.map(|v| row(v, 100.0, degc, mu, 0.0));
+    let two = [
+        level(80.0, 0.12, [0.01, 0.03]),
+        level(85.0, 0.10, [0.1, 0.3]),
+    ]
+    .concat();
+    let found = of(Contact::MicroSlip, &two).unwrap();
+    let parts = ["one temperature only", "stick and slip"];
+    let has = |part: &str| found.doubts.iter().any(|doubt| doubt.contains(part));
+    assert!(!parts.into_iter().any(has), "{:?}", found.doubts);
 }
 
 /// A path of a table is taken from the folder of the fluid's own file, wherever the car is.

@@ -436,6 +436,61 @@ fn val_a_border_by_hand() {
     }
 }
 
+/// A map of points of speed, rad/s, and mean effective pressures of load and fuel, bar, as flows of fuel.
+fn of_flow(points: &[[f64; 3]]) -> BsfcMap {
+    let basis = Basis {
+        heating_value_j_kg: 43e6,
+        displacement_m3: 1e-3,
+        cylinders: None,
+    };
+    let row = |(line, [speed, bar, fuel_bar]): (usize, &[f64; 3])| FuelRow {
+        speed_rad_s: *speed,
+        load: bar * 1e5,
+        fuel: fuel_bar * 1e5 * speed * 1e-3 / (4.0 * std::f64::consts::PI * 43e6),
+        line,
+    };
+    let table = FuelTable {
+        file: "f".to_owned(),
+        read_as: None,
+        swept: Vec::new(),
+        load: Load::Bmep,
+        fuel: Fuel::Flow,
+        rows: points.iter().enumerate().map(row).collect(),
+    };
+    BsfcMap::from_table(&table, &basis, (2.0, 0.0)).unwrap()
+}
+
+/// Truth: BM-4 by hand. At 100 rad/s there is no point below 4 bar, and fuel is on a line 4 bar + 2 p there: so it is below them.
+#[test]
+fn val_below_the_points_at_a_speed_by_hand() {
+    let map = of_flow(&[
+        [100.0, 4.0, 12.0],
+        [100.0, 6.0, 16.0],
+        [200.0, 2.0, 9.0],
+        [200.0, 4.0, 13.0],
+        [200.0, 6.0, 19.0],
+    ]);
+    assert!(
+        (map.fuel_pa[0][0] / 8e5 - 1.0).abs() < 1e-12,
+        "{:?}",
+        map.fuel_pa
+    );
+}
+
+/// Truth: definition of a grid. A load of zero, which a flow of fuel may have, is one load at all speeds.
+#[test]
+fn a_grid_may_have_a_load_of_zero() {
+    let points =
+        [100.0, 200.0, 300.0].map(|speed| [0.0, 2.0, 6.0].map(|bar| [speed, bar, 3.0 + 2.0 * bar]));
+    let map = of_flow(&points.concat());
+    assert_eq!(
+        (map.speed_rad_s.len(), map.bmep_pa.len()),
+        (3, 3),
+        "{map:?}"
+    );
+    assert!(map.known.is_none() && map.bmep_pa[0] == 0.0);
+}
+
 /// Property: triangles give a linear field exactly, whatever the unit of an axis; a point keeps its own value to the bit.
 #[test]
 fn a_lattice_of_a_linear_field() {

@@ -7,7 +7,10 @@
 use crate::common::{Keep, ZERO, at, car, cycle, larger};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Conditions as Run, Outcome, Row, Start, check_physics, drive};
+use cvtcycle_model::cycle::Trace;
+use cvtcycle_model::drive::{
+    Conditions as Run, Outcome, Row, Start, check_physics, drive, own_trace,
+};
 use cvtcycle_model::engine::StartStop;
 use cvtcycle_model::engine::start_stop::{Command, Conditions, Electric, StartStopState};
 use cvtcycle_model::flags::Flags;
@@ -344,6 +347,28 @@ fn first_stop_waits_from_key_on() {
         .filter(|r| r.time_s > 1980.0 && off(r))
         .map(|r| r.time_s);
     assert!(on_s.fold(f64::INFINITY, f64::min) > 1969.0 + 300.0);
+}
+
+/// Truth: definition. A trace has a row at `first_stop_after_s` where the car is at rest then, and none for it where it drives: an ECE 15 is at rest to 11 s, and
+/// drives from 11 to 28 s.
+#[test]
+fn a_row_for_the_first_stop_is_at_rest() {
+    let ece = cycle("ece15");
+    let trace = |first_s: f64| {
+        let setup = stopping("rover_216_cvt", &[&format!("first_stop_after_s={first_s}")]);
+        own_trace(&setup.car(23.0 + ZERO), ece.trace_for(true)).into_owned()
+    };
+    let has = |trace: &Trace, time_s: f64| {
+        let ends = trace.intervals.iter().map(|interval| interval.end_s);
+        ends.into_iter().any(|end_s| end_s == time_s)
+    };
+    let free = trace(0.0);
+    for moving_s in [13.3, 19.7, 25.1] {
+        assert!(trace(moving_s) == free, "{moving_s} s");
+    }
+    for resting_s in [7.3, 33.3] {
+        assert!(has(&trace(resting_s), resting_s) && !has(&free, resting_s));
+    }
 }
 
 /// Contract: both ledgers close in every row, and the store's term is what the store loses, over cars, cycles, steps and pumps.

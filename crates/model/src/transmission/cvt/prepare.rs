@@ -233,11 +233,11 @@ fn shift<P: PrimeMover<R>, R: Real>(
     }
 }
 
-/// Share of a step after which the secondary has reached a speed, rad/s; 1 where it does not.
+/// Share of a step after which the secondary has reached a speed, rad/s; 1 where it does not, 0 or less where it has before.
 #[physics]
 fn locks_at<R: Real>(lock_rad_s: R, [first, last]: [R; 2]) -> R {
     let (zero, one) = (first.splat(0.0), first.splat(1.0));
-    let share = ((lock_rad_s - first) / (last - first)).clamp(0.0, 1.0);
+    let share = (lock_rad_s - first) / (last - first);
     (last.gt(first) & last.gt(lock_rad_s)).select(share, lock_rad_s.gt(first).select(one, zero))
 }
 
