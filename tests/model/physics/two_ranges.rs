@@ -199,6 +199,123 @@ fn full_throttle_through_both_ranges() {
     assert!((0.9..1.3).contains(&apart), "{apart}");
 }
 
+const GEAR: &str = "transmission.cvt.ranges.launch_gear";
+/// The gear of the class `box_cvt_launch_gear`, for the belt of the Rover: a step of 1.5 below its lowest ratio.
+const LAUNCH: [(&str, &str); 8] = [
+    ("gear_ratio", "3.6"),
+    ("up_ratio", "2.9"),
+    ("down_ratio", "4.0"),
+    ("change_s", "0.5"),
+    ("mesh_loss_percent", "1.5"),
+    ("drag_nm", "0.6"),
+    ("viscous_exponent", "0.543"),
+    ("cap_nm", "1.5"),
+];
+
+fn geared(more: &[(&str, &str)]) -> Result<cvtcycle_config::setup::Setup, String> {
+    let own = LAUNCH
+        .iter()
+        .filter(|(key, _)| !more.iter().any(|(other, _)| other == key));
+    let each = own.chain(more).map(|(key, value)| match key.contains('.') {
+        true => format!("{key}={value}"),
+        false => format!("{GEAR}.{key}={value}"),
+    });
+    try_car("rover_216_cvt", &each.collect::<Vec<_>>())
+}
+
+#[test]
+fn a_car_with_a_launch_gear_obeys_the_laws() {
+    let setup = geared(&[]).unwrap();
+    for (name, ambient) in [("ece15_eudc", 25.0), ("ece15_eudc", -10.0), ("us06", 25.0)] {
+        for finding in check_physics(&setup, &cycle(name), ambient + ZERO, 1.0) {
+            assert!(finding.holds(), "{name} {ambient}: {finding:?}");
+        }
+    }
+}
+
+/// RG-6 and RG-7 from the rows: the belt in low and without load while the gear has the torque, then the belt alone.
+#[test]
+fn gear_and_belt_of_a_drive() {
+    let setup = geared(&[]).unwrap();
+    let Transmission::Cvt(cvt) = setup.transmission() else {
+        panic!("a CVT")
+    };
+    let low = cvt.ranges.as_ref().unwrap().low;
+    assert!((low * cvt.ratio.low / 3.6 - 1.0).abs() < 1e-12);
+    let (mut in_gear, mut by_belt) = (0, 0);
+    for row in rows(&setup, "ftp75") {
+        assert!((1.0 - 1e-12..=low * (1.0 + 1e-12)).contains(&row.range_ratio));
+        if row.rests() {
+            continue;
+        }
+        if row.range_ratio >= low {
+            in_gear += 1;
+            assert!(
+                row.secondary_nm.abs() < 3.0,
+                "{} s: {} Nm",
+                row.time_s,
+                row.secondary_nm
+            );
+            assert!(row.speed_m_s < 20.0, "{} s", row.time_s);
+        } else if row.range_ratio <= 1.0 {
+            by_belt += 1;
+        }
+    }
+    assert!(
+        in_gear > 60 && by_belt > 10 * in_gear,
+        "{in_gear} {by_belt}"
+    );
+}
+
+/// Truth: a belt without load loses less than one that pulls the car away.
+#[test]
+fn a_launch_gear_spares_the_belt() {
+    let c = cycle("ece15");
+    let lost = |setup: &cvtcycle_config::setup::Setup| {
+        let totals = drive(setup, &c, &at(25.0, Start::Warm)).totals;
+        let loss_j = totals.total().loss_j;
+        loss_j[Component::BeltBand] + loss_j[Component::BeltSlip]
+    };
+    let own = lost(&geared(&[]).unwrap());
+    let belt = lost(&car("rover_216_cvt", &[]));
+    assert!(own < belt, "{own} {belt}");
+}
+
+#[test]
+fn a_launch_gear_does_not_depend_on_the_step() {
+    let setup = geared(&[]).unwrap();
+    for name in ["ece15_eudc", "ftp75", "us06"] {
+        let [coarse, fine] = [1.0, 0.05].map(|max_dt_s| {
+            let conditions = Conditions {
+                max_dt_s,
+                ..at(25.0, Start::Soak)
+            };
+            fuel_kg(&setup, &cycle(name), &conditions)
+        });
+        let percent = 100.0 * (coarse / fine - 1.0);
+        assert!(percent.abs() < 0.5, "{name}: {percent} %");
+    }
+}
+
+#[test]
+fn bad_launch_gears_are_refused() {
+    for (more, words) in [
+        (
+            ("gear_ratio", "2.0"),
+            "the belt has a lower ratio than the launch gear",
+        ),
+        (("up_ratio", "3.7"), "with the engine below its target"),
+        (("down_ratio", "3.0"), "the gear would be wanted again"),
+        (
+            ("transmission.cvt.launch_at", "output"),
+            "past a clutch behind it",
+        ),
+    ] {
+        let problems = geared(&[more]).unwrap_err();
+        assert!(problems.contains(words), "{more:?}: {problems}");
+    }
+}
+
 #[test]
 fn bad_sets_are_refused() {
     let refused = |more: &[(&str, &str)]| try_car("rover_216_cvt", &with(more)).unwrap_err();

@@ -20,7 +20,7 @@ embedded! {
     vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "civic_20_6mt" "civic_20_cvt" "justy_ecvt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
     /// Classes of cars, boxes and engines, which vehicle files inherit from.
     classes: "classes" ".toml" [
-        "compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_cvt_converter" "box_cvt_chain" "box_cvt_chain_clutch" "box_cvt_two_range" "box_manual_5" "box_manual_6"
+        "compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_cvt_converter" "box_cvt_chain" "box_cvt_chain_clutch" "box_cvt_two_range" "box_cvt_launch_gear" "box_manual_5" "box_manual_6"
         "engine_pfi_1990" "engine_pfi_2000" "engine_pfi_2005" "engine_pfi_2010" "engine_pfi_2013" "engine_di_2012" "engine_di_high_compression_2012" "engine_atkinson_2017" "engine_turbo_2010" "engine_turbo_2015" "engine_diesel_2015"
         "engine_bmw_n57" "engine_ford_ecoboost_16" "engine_ford_ecoboost_27" "engine_gm_lv3" "engine_honda_l15b7" "engine_mazda_skyactiv_g_20" "engine_toyota_a25a_fks"
     ];

@@ -187,6 +187,8 @@ pub(crate) struct PartTorques<R: Real = f64> {
     pub final_drive: R,
     /// Loss of the set with two ranges, at the secondary.
     pub range_gear: R,
+    /// Torque that a launch gear takes past the belt, at the secondary (RG-6).
+    pub past_belt: R,
     /// At the secondary pulley, bearing and rings of its shaft with it: what the belt carries.
     pub secondary: R,
     /// Bearings of the pulley shafts, primary and secondary.
@@ -214,6 +216,7 @@ impl<R: Real> PartTorques<R> {
         PartTorques {
             final_drive: none,
             range_gear: none,
+            past_belt: none,
             secondary: none,
             bearing: [none; 2],
             ring: [none; 2],
@@ -437,7 +440,8 @@ impl<'a, R: Real> Driveline<'a, R> {
         let drive_nm = self.through_nm(output_nm, drive, speeds_rad_s, clamp.pressure_pa, inside);
         torques.final_drive = drive_nm - output_nm;
         torques.range_gear = self.range_nm(drive_nm, secondary_rad_s);
-        torques.secondary = drive_nm + torques.range_gear;
+        torques.past_belt = self.past_belt_nm(drive_nm);
+        torques.secondary = drive_nm + torques.range_gear - torques.past_belt;
         self.turn_secondary(torques, clamp, secondary_rad_s);
     }
 
@@ -478,6 +482,16 @@ impl<'a, R: Real> Driveline<'a, R> {
                 Component::RangeGear,
                 range.loss_nm(drive_nm, secondary_rad_s),
             ),
+            _ => drive_nm.splat(0.0),
+        }
+    }
+
+    /// Torque that a launch gear takes past the belt for one into the final drive, both at the secondary, Nm (RG-6).
+    fn past_belt_nm(&self, drive_nm: R) -> R {
+        match &self.range {
+            Some(range) if self.parts.final_drive && !self.is_mapped() => {
+                range.past_belt_nm(drive_nm)
+            }
             _ => drive_nm.splat(0.0),
         }
     }

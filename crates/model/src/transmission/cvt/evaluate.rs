@@ -304,7 +304,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
-        let primary_nm = torques.secondary * ((1.0 - slip) * line.at.geometry.inv_ratio)
+        let behind_nm = torques.secondary + torques.past_belt; // RG-6
+        let primary_nm = behind_nm * ((1.0 - slip) * line.at.geometry.inv_ratio)
             + belt_nm
             + torques.primary_nm();
         Chain {

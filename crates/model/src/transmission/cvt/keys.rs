@@ -7,7 +7,7 @@ use super::final_drive::FinalDrive;
 use super::floors::{Floors, PRESSURE, PressureKeys};
 use super::pulley_bearing::{PulleyBearing, PulleyBearingKeys};
 use super::pump::{Pump, PumpKeys};
-use super::range_gear::{RangeGear, RangeKeys};
+use super::range_gear::{LaunchGearKeys, RangeGear, RangeKeys};
 use super::seal_ring::{SealRing, SealRingKeys};
 use super::selector::{Selector, SelectorKeys};
 use super::shaft_drag::{ShaftDrag, ShaftKeys};
@@ -71,6 +71,7 @@ keys! {
         ranges: or_word("one", options(&[
             Choice::word("one", "the secondary turns with the final drive"),
             Choice::new("two", "a planetary set with a low and a high range behind the secondary", RangeKeys::TABLE),
+            Choice::new("launch_gear", "a pair of gears next to the belt for pulling away", LaunchGearKeys::TABLE),
         ])), "ranges of the box", ["RG-1"];
         launch: LAUNCH, "launch device: a friction clutch, or a torque converter";
         launch_at: words(&[
@@ -156,7 +157,7 @@ impl Cvt {
         let (floors, cap_pa) = Floors::from_values(&pressure);
         check_cap(s, pressure_table.as_deref(), cap_pa);
         let changes = maps(&s.table("maps"));
-        let ranges = RangeGear::from_values(s, &CVT.ranges, (ratio.low, ratio.high));
+        let ranges = RangeGear::from_values(s, &CVT.ranges, &ratio);
         check_ranges(s, ranges.is_some(), changes.as_deref());
         let maps = changes
             .iter()
@@ -167,6 +168,7 @@ impl Cvt {
         );
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let launch = coupling::from_values(s, &CVT.launch, 5.0);
+        let launch_behind = launch_behind(s, &launch, (changes.as_deref(), ranges.as_deref()));
         let mut cvt = Cvt {
             final_drive: match final_drive {
                 Some(known) => known.clone(),
@@ -190,7 +192,7 @@ impl Cvt {
             floors,
             cap_pa,
             low_radius_m: low.primary_radius_m,
-            launch_behind: launch_behind(s, &launch, changes.as_deref()),
+            launch_behind,
             coupling: launch,
             selector: Selector::from_values(&s.table("selector")),
             full_load_route,
@@ -204,7 +206,11 @@ impl Cvt {
 }
 
 /// Reads the place of the launch clutch, true behind the variator; a converter there, or a map of the whole box, is reported.
-fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossChanges>) -> bool {
+fn launch_behind<V: Values>(
+    s: &V,
+    launch: &dyn Coupling,
+    (changes, ranges): (Option<&LossChanges>, Option<&RangeGear>),
+) -> bool {
     let behind = s.word(&CVT.launch_at) == "output";
     if behind && launch.by_command() {
         s.complain(
@@ -221,6 +227,14 @@ fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossC
             "input where maps.box is given",
             "the map of a whole box is that of a box whose launch device is at its input",
             "leave maps.box out, or set launch_at = \"input\"",
+        );
+    }
+    if behind && ranges.is_some_and(|set| set.past_belt) {
+        s.complain(
+            "launch_at",
+            "input where ranges is launch_gear",
+            "the launch gear goes from the primary past the belt, and past a clutch behind it",
+            "set launch_at = \"input\", or ranges = \"one\"",
         );
     }
     behind

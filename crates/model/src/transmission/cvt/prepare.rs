@@ -172,8 +172,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
             Some(hold) => {
                 let step = set.step(&kept.range, zero + input.dt_s);
                 if hold.paced {
-                    let (asked, one) = (hold.ratio * step.ends[1], zero.splat(1.0));
-                    next.low = set.wants_low(&kept.range, asked, one, demand.coupled);
+                    let asked = hold.ratio * step.ends[1] * behind[1];
+                    next.low = set.wants_low(&kept.range, asked, behind[1], demand.coupled);
                 }
                 step
             }
@@ -212,6 +212,15 @@ fn shift<P: PrimeMover<R>, R: Real>(
             } // RC-12, RC-16
         }
         None => cvt.ratio.step(&demand),
+    };
+    let controlled = held.as_ref().is_none_or(|hold| hold.paced);
+    let made = match sets {
+        // RG-6: the belt waits in low.
+        Some(set) if set.past_belt && controlled && next.low.any() => {
+            let waits = cvt.ratio.paced(&demand, cvt.ratio.low);
+            made.replaced(next.low, &waits)
+        }
+        _ => made,
     };
     let change = made.change;
     let volume = change.gt(0.0).select(down_m3 * change, -up_m3 * change);

@@ -6,15 +6,21 @@
 //! | RG-2 | with I* i the target speed over w_fd: to the high range where I* i < I_up i_low, with the coupling locked, back where I* i > I_down; target and w_fd linear within a step; low at rest; a held ratio (RC-12) keeps the range, of a paced one (RC-15) I i at the end of a step decides what the next one does | ASSUMED: I_up the highest ratio of the belt, so that the step ends in the middle of its range; I_down above I_up i_low by a hysteresis |
 //! | RG-3 | while the range changes ln i goes to its new value at the rate ln i_low/t, and the belt follows its target the other way, within RC-4 and RC-5 | ASSUMED: t 0.4 to 1.2 s; an exact coordination has the engine turn on as without a step |
 //! | RG-4 | P_s = f P_fd + RG-5; engaged in low f = 1 + e driving, 1/(1 + e) dragged, in high 1; changing f = i driving, i/i_low dragged; the mean over the step by time | derived: of the two clutches the one of the high range carries a driving torque while both slip, that of the low range a dragging one; e 0.5 to 1.5 % ASSUMED |
+//! | RG-6 | launch gear: a pair of gears from the primary to the final drive, i = I_g/I_low while it has the torque, the belt at its lowest ratio without load; what the low range carries by RG-4 goes past the belt | derived: layout of Toyota's K120; friction clutches of gear and belt ASSUMED |
+//! | RG-7 | RG-2 with w* < I_up w_fd or w_P < I_g w_fd for the belt, w* > I_down w_fd for the gear, w_P of RC-8 | ASSUMED: I_up between I_low and I_g, so that the engine is as far above its target before a change as it is below after it; I_down above I_g, so that the gear gives no more than the target |
 //! | RG-5 | drag of the open one at w_fd: CD-1, CD-2 | derived: with the ring driven and the sun braked, an open clutch or brake slips at the speed of the carrier |
 //!
 //! w_s speed of the secondary (of the shaft behind the clutch LO-1), w_fd that into the final drive. No torque is interrupted, and the pressure of brake
 //! and clutch is that of PC-5's control pressure.
 
 use super::clutch_drag::{CLEARANCE_M, ClutchDrag};
+use super::controller::RatioControl;
 use super::viscosity_power;
 use crate::keys::{Key, Values, keys};
 use crate::math::{Gather, Mask, Real, physics};
+
+/// Part of the torque that a belt next to a launch gear is taken to carry at least, where it bounds that of the wheels. ASSUMED, numerical.
+const LEAST_BY_BELT: f64 = 0.01;
 
 /// The checked set.
 #[derive(Clone, Copy, Debug, Gather, PartialEq)]
@@ -27,6 +33,11 @@ pub struct RangeGear<R: Real = f64> {
     pub down_ratio: R,
     /// Time t of a change, s.
     pub change_s: R,
+    /// Speed into the final drive at which the low range ends, rad/s (RG-7); infinite in a box whose belt goes on in it.
+    pub most_behind_rad_s: R,
+    /// True for a launch gear, whose power goes past the belt (RG-6).
+    #[gather(same)]
+    pub past_belt: bool,
     /// Loss e of the low range over its power.
     pub mesh_share: R,
     /// Drag of the clutch or brake that is open.
@@ -53,6 +64,8 @@ pub(crate) struct RangeStep<R: Real = f64> {
     drives: R,
     /// The same where it is dragged.
     drags: R,
+    /// Parts of both that the low range carries.
+    by_low: [R; 2],
 }
 
 /// The set in a step, in oil.
@@ -102,7 +115,8 @@ impl<R: Real> RangeGear<R> {
         behind: R,
         coupled: R::Mask,
     ) -> R::Mask {
-        let up = coupled & (self.up_ratio * self.low * behind).gt(target);
+        let ends = self.most_behind_rad_s.lt(behind); // RG-7
+        let up = coupled & ((self.up_ratio * self.low * behind).gt(target) | ends);
         (now.low & !up) | target.gt(self.down_ratio * behind)
     }
 
@@ -114,6 +128,7 @@ impl<R: Real> RangeGear<R> {
             mean: one,
             drives: one,
             drags: one,
+            by_low: [one - one; 2],
         }
     }
 
@@ -127,6 +142,7 @@ impl<R: Real> RangeGear<R> {
             mean: target,
             drives: driven,
             drags: one / driven,
+            by_low: [driven, one / driven].map(|all| now.low.select(all, one - one)),
         };
         let settled = now.ratio.bits_eq(target);
         if settled.all() {
@@ -140,12 +156,18 @@ impl<R: Real> RangeGear<R> {
         // The mean of a ratio whose logarithm is linear.
         let changing = moves.select((end - now.ratio) / moved, now.ratio);
         let share = moves.select(moved.abs() / most, one);
+        // RG-4: who carries the torque meanwhile.
+        let on_way = [one - one, changing / self.low];
         let over_step = |on_way: R, then: R| then + share * (on_way - then);
         RangeStep {
             ends: [now.ratio, settled.select(target, end)],
             mean: settled.select(target, over_step(changing, end)),
             drives: settled.select(engaged.drives, over_step(changing, engaged.drives)), // RG-4
             drags: settled.select(engaged.drags, over_step(changing / self.low, engaged.drags)),
+            by_low: [0, 1].map(|k| {
+                let then = engaged.by_low[k];
+                settled.select(then, over_step(on_way[k], then))
+            }),
         }
     }
 
@@ -168,7 +190,8 @@ impl<R: Real> RangeGear<R> {
             return (step, InRange { ratio, ..*now });
         }
         let bound = now.low.select(self.up_ratio * self.low, self.down_ratio);
-        let [from, to] = [0, 1].map(|k| targets[k] - bound * behind[k]);
+        let ends = now.low.select(self.most_behind_rad_s, one * f64::INFINITY);
+        let [from, to] = [0, 1].map(|k| (targets[k] / bound).min(ends) - behind[k]);
         let at_once = other(first);
         let crosses = at_once.select(one - one, (from / (from - to)).clamp(0.0, 1.0));
         let share = changes.select(crosses, one);
@@ -181,6 +204,7 @@ impl<R: Real> RangeGear<R> {
             mean: both(before.mean, after.mean),
             drives: both(before.drives, after.drives),
             drags: both(before.drags, after.drags),
+            by_low: [0, 1].map(|k| both(before.by_low[k], after.by_low[k])),
         };
         let ratio = step.ends[1];
         (step, InRange { ratio, low: last })
@@ -211,6 +235,26 @@ impl<R: Real> TurningRange<'_, R> {
         let drag_nm = self.set.drag.torque_nm(self.viscosity, behind_rad_s); // RG-5
         final_drive_nm * over + drag_nm / self.step.mean
     }
+
+    /// Largest torque into the final drive for one of the belt, both at the secondary, without drag (RG-4, RG-6).
+    pub fn output_over_belt(&self) -> R {
+        let step = &self.step;
+        let past = |k: usize| match self.set.past_belt {
+            true => step.by_low[k],
+            false => step.drives.splat(0.0),
+        };
+        let by_belt = (step.drives - past(0)).min(step.drags - past(1));
+        1.0 / by_belt.max(LEAST_BY_BELT)
+    }
+
+    /// Torque that goes past the belt of one into the final drive, both at the secondary, Nm (RG-6).
+    pub fn past_belt_nm(&self, final_drive_nm: R) -> R {
+        if !self.set.past_belt {
+            return final_drive_nm.splat(0.0);
+        }
+        let [drives, drags] = self.step.by_low;
+        final_drive_nm * final_drive_nm.gt(0.0).select(drives, drags)
+    }
 }
 
 keys! {
@@ -226,6 +270,33 @@ keys! {
         cap_nm: number(0.0, 20.0), "largest drag", ["RG-5"];
         peak_rpm: optional(number(200.0, 20_000.0)), "speed behind the set of the largest drag; absent: the same drag at every speed", ["RG-5"];
     }
+
+    /// Keys of `[transmission.cvt.ranges.launch_gear]`.
+    GEAR: LaunchGearKeys = "launch_gear" [] {
+        gear_ratio: number(1.0, 10.0), "speed of the primary over that into the final drive in the launch gear", ["RG-6"];
+        up_ratio: number(0.5, 10.0), "target of the engine speed over that into the final drive below which the belt takes over", ["RG-7"];
+        down_ratio: number(0.5, 20.0), "the same above which the gear takes over", ["RG-7"];
+        change_s: number(0.1, 3.0), "time of a change between gear and belt", ["RG-3"];
+        mesh_loss_percent: number(0.0, 10.0), "loss of the gear over the power behind it", ["RG-4"];
+        drag_nm: number(0.0, 20.0), "largest drag of the open clutch at 11 mm2/s", ["RG-5"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity in that drag", ["RG-5"];
+        cap_nm: number(0.0, 20.0), "largest drag", ["RG-5"];
+        peak_rpm: optional(number(200.0, 20_000.0)), "speed into the final drive of the largest drag; absent: the same drag at every speed", ["RG-5"];
+    }
+}
+
+/// Drag of an open clutch by its size at reference viscosity, Nm, exponent and largest torque, Nm, with the speed of the peak, rad/s.
+fn drag([drag_nm, exponent, cap_nm]: [f64; 3], peak_rad_s: Option<f64>) -> ClutchDrag {
+    ClutchDrag {
+        drag_nm,
+        exponent,
+        cap_nm,
+        peak_rad_s,
+        clearance_m: CLEARANCE_M,
+        oil_share: 1.0,
+        set_nm: 0.0,
+        set_nm_s: 0.0,
+    }
 }
 
 impl RangeGear {
@@ -236,17 +307,17 @@ impl RangeGear {
             up_ratio: s.number(&RANGES.up_belt_ratio),
             down_ratio: s.number(&RANGES.down_belt_ratio),
             change_s: s.number(&RANGES.change_s),
+            most_behind_rad_s: f64::INFINITY,
+            past_belt: false,
             mesh_share: s.number(&RANGES.mesh_loss_percent),
-            drag: ClutchDrag {
-                drag_nm: s.number(&RANGES.drag_nm),
-                exponent: s.number(&RANGES.viscous_exponent),
-                cap_nm: s.number(&RANGES.cap_nm),
-                peak_rad_s: s.optional(&RANGES.peak_rpm),
-                clearance_m: CLEARANCE_M,
-                oil_share: 1.0,
-                set_nm: 0.0,
-                set_nm_s: 0.0,
-            },
+            drag: drag(
+                [
+                    s.number(&RANGES.drag_nm),
+                    s.number(&RANGES.viscous_exponent),
+                    s.number(&RANGES.cap_nm),
+                ],
+                s.optional(&RANGES.peak_rpm),
+            ),
         };
         if set.up_ratio < high_ratio {
             s.complain(
@@ -276,14 +347,67 @@ impl RangeGear {
         set
     }
 
-    /// The set that a box chooses, with ends of the belt ratio; none in a box with one range.
+    /// The launch gear from the values of its table, of a CVT with a ratio control.
+    fn launch_gear<V: Values>(s: &V, ratio: &RatioControl) -> Self {
+        let (gear, up) = (s.number(&GEAR.gear_ratio), s.number(&GEAR.up_ratio));
+        let low = gear / ratio.low;
+        let set = RangeGear {
+            low,
+            up_ratio: up / low,
+            down_ratio: s.number(&GEAR.down_ratio),
+            change_s: s.number(&GEAR.change_s),
+            most_behind_rad_s: ratio.highest_rad_s / gear, // RG-7
+            past_belt: true,
+            mesh_share: s.number(&GEAR.mesh_loss_percent),
+            drag: drag(
+                [
+                    s.number(&GEAR.drag_nm),
+                    s.number(&GEAR.viscous_exponent),
+                    s.number(&GEAR.cap_nm),
+                ],
+                s.optional(&GEAR.peak_rpm),
+            ),
+        };
+        if low <= 1.0 {
+            s.complain(
+                GEAR.gear_ratio.name,
+                &format!("above {}, the lowest ratio of the belt", ratio.low),
+                "the belt has a lower ratio than the launch gear",
+                "raise it, or lower transmission.cvt.ratio.low",
+            );
+        }
+        if up >= gear {
+            s.complain(
+                GEAR.up_ratio.name,
+                &format!("below {gear}, the ratio of the gear"),
+                "the gear would be left with the engine below its target",
+                "lower it",
+            );
+        }
+        if set.down_ratio < gear {
+            s.complain(
+                GEAR.down_ratio.name,
+                &format!("at least {gear}, the ratio of the gear"),
+                "after a change to the belt the gear would be wanted again",
+                "raise it",
+            );
+        }
+        set
+    }
+
+    /// The set that a box with a ratio control chooses; none in a box with one range.
     pub(super) fn from_values<V: Values>(
         s: &V,
         key: &Key<'static>,
-        ends: (f64, f64),
+        ratio: &RatioControl,
     ) -> Option<Box<Self>> {
         let (kind, table) = s.choose(key);
-        (kind == "two").then(|| Box::new(RangeGear::from_table(&table, ends)))
+        let set = match kind {
+            "two" => RangeGear::from_table(&table, (ratio.low, ratio.high)),
+            "launch_gear" => RangeGear::launch_gear(&table, ratio),
+            _ => return None,
+        };
+        Some(Box::new(set))
     }
 }
 
@@ -297,17 +421,10 @@ mod tests {
             up_ratio: 0.6,
             down_ratio: 1.8,
             change_s: 0.6,
+            most_behind_rad_s: f64::INFINITY,
+            past_belt: false,
             mesh_share: 0.01,
-            drag: ClutchDrag {
-                drag_nm: 0.0,
-                exponent: 0.0,
-                cap_nm: 0.0,
-                peak_rad_s: None,
-                clearance_m: CLEARANCE_M,
-                oil_share: 1.0,
-                set_nm: 0.0,
-                set_nm_s: 0.0,
-            },
+            drag: drag([0.0; 3], None),
         }
     }
 

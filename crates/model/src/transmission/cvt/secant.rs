@@ -220,16 +220,19 @@ pub(super) struct TorqueSecant<R: Real> {
     ratio: R,
     /// Output torque that is always allowed, Nm.
     allowed_nm: R,
+    /// Output torque over that of the belt; `None` where they are one.
+    over_belt: Option<R>,
     last: Option<(R, R)>,
 }
 
 #[physics]
 impl<R: Real> TorqueSecant<R> {
     #[inline]
-    pub fn new(ratio: R, first_nm: R) -> Self {
+    pub fn new(ratio: R, first_nm: R, over_belt: Option<R>) -> Self {
         TorqueSecant {
             ratio,
             allowed_nm: first_nm.abs(),
+            over_belt,
             last: None,
         }
     }
@@ -253,7 +256,10 @@ impl<R: Real> TorqueSecant<R> {
         }
         self.last = Some((x, miss_nm));
         let slope = if plain { x.splat(1.0) } else { slopes.torque };
-        let carried = 1.05 * now.torques.belt.capacity_nm;
+        let mut carried = 1.05 * now.torques.belt.capacity_nm;
+        if let Some(over_belt) = self.over_belt {
+            carried = carried * over_belt; // RG-4, RG-6
+        }
         let carried = carried.max(self.allowed_nm);
         let next = (x - miss_nm * self.ratio / slope).clamp(-carried, carried); // CV-5
         (next, (1e-9 * carried).ge((next - x).abs()))

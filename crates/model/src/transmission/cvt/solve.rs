@@ -9,6 +9,7 @@
 use super::controller::ClampLaw;
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::prepare::{Try, prepare};
+use super::range_gear::TurningRange;
 use super::secant::{Slopes, TorqueSecant};
 use super::shift_flow::ShiftFlow;
 use super::step_output::{Outcome, finish, standstill};
@@ -157,7 +158,9 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     fn iterate(&self, may_leave: bool, mut busy: R::Mask, work: &mut Work<R>) {
         let by_command = self.line.cvt.coupling.by_command();
         let mut last: Option<(Guess<R>, R)> = None;
-        let mut torque = TorqueSecant::new(self.line.at.geometry.ratio, work.guess.output_nm);
+        let (ratio, first_nm) = (self.line.at.geometry.ratio, work.guess.output_nm);
+        let past = self.line.range.as_ref().map(TurningRange::output_over_belt);
+        let mut torque = TorqueSecant::new(ratio, first_nm, past);
         let mut count = 0;
         loop {
             self.evaluate(&work.guess, &work.limit, &mut work.point);

@@ -265,7 +265,8 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.secondary_pa = g.pressure_pa;
     output.clamp_cause = causes(p.clamp_cause);
     output.slip = g.slip;
-    output.primary_nm = p.primary_nm - p.torques.primary_nm();
+    let past_belt_nm = p.torques.past_belt * ((1.0 - g.slip) / ratio);
+    output.primary_nm = p.primary_nm - p.torques.primary_nm() - past_belt_nm;
     output.secondary_nm = p.torques.secondary;
     output.clamp_safety = p.torques.belt.capacity_nm / p.torques.secondary.abs();
     let line = &step.line;

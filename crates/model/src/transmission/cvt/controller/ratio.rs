@@ -539,6 +539,17 @@ impl<R: Real> Shifted<R> {
             held: ratio.splat_mask(false),
         }
     }
+
+    /// `by` where the mask says so.
+    pub(in crate::transmission::cvt) fn replaced(self, mask: R::Mask, by: &Self) -> Self {
+        Shifted {
+            mean: mask.select(by.mean, self.mean),
+            end: mask.select(by.end, self.end),
+            change: mask.select(by.change, self.change),
+            last: mask.select(by.last, self.last),
+            held: mask.select(by.held, self.held),
+        }
+    }
 }
 
 #[physics]
