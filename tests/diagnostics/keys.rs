@@ -193,6 +193,18 @@ fn sample(missing: &Problem) -> Option<String> {
     if missing.key == "transmission.cvt.clamp.table.file" {
         return Some("\"pressure.csv\"".to_owned());
     }
+    // Ratios that exclude each other.
+    let ratios = [
+        ("ranges.two.low_ratio", 1.82),
+        ("ranges.two.up_belt_ratio", 0.6),
+        ("ranges.two.down_belt_ratio", 1.8),
+        ("ranges.launch_gear.gear_ratio", 4.0),
+        ("ranges.launch_gear.up_ratio", 3.5),
+        ("ranges.launch_gear.down_ratio", 4.5),
+    ];
+    if let Some((_, ratio)) = ratios.iter().find(|(key, _)| missing.key.ends_with(key)) {
+        return Some(format!("{ratio:?}"));
+    }
     let (low, high) = numbers(&missing.allowed)?;
     Some(format!(
         "{:?}",
