@@ -77,7 +77,7 @@ fn the_charge_is_balanced() {
         let setup = fitted(vehicle, &[]);
         let without = fitted(vehicle, &[("starter_generator.recuperation_w", "0")]);
         for (name, start) in [
-            ("wltc", Start::Soak),
+            ("wltc_class3b", Start::Soak),
             ("ftp75", Start::Soak),
             ("ece15_eudc", Start::Warm),
         ] {
