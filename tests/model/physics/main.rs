@@ -44,6 +44,7 @@ mod side_by_side;
 mod smaller_points;
 mod standstill;
 mod start_stop;
+mod starter_generator;
 mod steps;
 mod tables;
 mod targets;

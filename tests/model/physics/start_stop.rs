@@ -13,6 +13,7 @@ use cvtcycle_model::drive::{
 };
 use cvtcycle_model::engine::StartStop;
 use cvtcycle_model::engine::start_stop::{Command, Conditions, Electric, StartStopState};
+use cvtcycle_model::engine::starter_generator::Flow;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::transmission::component::Component;
@@ -236,14 +237,18 @@ fn val_energies_by_hand() {
     near(on.charging_w(&drawn(27e3), 1.0), 27e3 / 60.0 / 0.9 / 0.6);
     near(on.charging_w(&drawn(100e3), 1.0), 1000.0);
     engine.charging_w = 1000.0;
-    let charging = Electric::charging(&on, &engine, 200.0);
+    let flow = Flow {
+        shaft_w: engine.charging_w,
+        consumers: 0.0,
+    };
+    let charging = Electric::running(&on, &engine, 200.0, &flow);
     near(-charging.store_w, 540.0);
     near(charging.loss_w, 460.0);
     near(
         engine.accessories_nm(200.0),
         (sim.engine.electrical_w + 1000.0) / 200.0 + sim.engine.accessory_nm,
     );
-    near(charging.drawn_j(27e3, 10.0), 27e3 - 5400.0);
+    near(charging.drawn_j(&on, 27e3, 10.0), 27e3 - 5400.0);
 }
 
 /// On ECE15+EUDC the engine stops at every rest once it may at 23 degC, and never from a soak at -10 degC, since the sump of the CVT stays below

@@ -203,7 +203,7 @@ impl<'a> Scene<'a> {
             step.dt_s,
         );
         if let Some(on) = &car.engine.start_stop {
-            engine.charging_w = on.charging_w(&state.start_stop, step.dt_s); // EL-2
+            engine.charging_w = on.charging_w(&state.start_stop, step.dt_s); // EL-2, without recuperation
         }
         engine
     }

@@ -74,6 +74,11 @@ impl Recorder for ChunkedRecorder<'_> {
     }
 }
 
+/// Change of the stored energy over the fuel's up to which a drive is balanced (SG-6), ...
+const BALANCED: f64 = 1e-3;
+/// ... and the most repeats until it is. ASSUMED, numerical.
+const MAX_REPEATS: usize = 8;
+
 /// Drops everything.
 struct NullRecorder;
 
@@ -171,7 +176,41 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
         ..start
     };
     state.start_stop.on_s = 0.0; // a key-on of its own, after a warm-up too (SS-1)
+    let machine = car
+        .engine
+        .start_stop
+        .as_ref()
+        .and_then(|on| on.machine.as_ref());
+    if machine.is_some() {
+        state.start_stop.drawn_j = balanced_j(car, trace, conditions.max_dt_s, state);
+    }
     state
+}
+
+/// Fuel of a drive, J.
+#[derive(Default)]
+struct FuelRecorder {
+    fuel_j: f64,
+}
+
+impl Recorder for FuelRecorder {
+    fn record(&mut self, row: &Row, _: &EnergyTerms) {
+        self.fuel_j += row.fuel_power_w * row.dt_s;
+    }
+}
+
+/// Energy out of the store, J, with which a drive from a state begins and ends (SG-6).
+fn balanced_j(car: &Car, trace: &Trace, max_dt_s: f64, mut state: State) -> f64 {
+    for _ in 0..MAX_REPEATS {
+        let mut fuel = FuelRecorder::default();
+        let end = simulate(car, trace, max_dt_s, state, &mut fuel);
+        let before_j = state.start_stop.drawn_j;
+        state.start_stop.drawn_j = end.start_stop.drawn_j;
+        if (state.start_stop.drawn_j - before_j).abs() < BALANCED * fuel.fuel_j {
+            break;
+        }
+    }
+    state.start_stop.drawn_j
 }
 
 /// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop, and where the driver of a manual

@@ -96,15 +96,16 @@ impl<'a> Drive<'a> {
         let state = &mut self.state;
         let gear = self.gears.and_then(|g| g.get(step.interval).copied());
         let start_stop = &mut state.start_stop;
-        let stopping = Stopping::new(car, self.trace, gear, step, &state.heat, start_stop);
+        let mut stopping = Stopping::new(car, self.trace, gear, step, &state.heat, start_stop);
         let engine_off = step.engine_off || stopping.as_ref().is_some_and(Stopping::stopped);
         // First, so that nothing is between the oils of engine and transmission: a processor works on both at once.
         let mut output = StepOutput::at_rest();
         let wheel = wheel(car, step, &mut state.tyre_k);
         let driven = (state.transmission.as_ref(), gear);
         let mut engine = engine(car, step, &wheel, driven, &state.heat, &mut state.running);
-        if let Some(stopping) = &stopping {
-            engine.charging_w = stopping.charging_w(start_stop, step.dt_s);
+        if let Some(stopping) = &mut stopping {
+            let at = (wheel.power_w, state.running.speed_rad_s);
+            engine.charging_w = stopping.charging_w(&engine, at, start_stop, step.dt_s);
         }
         let engine = engine;
         let mut input = StepInput {

@@ -4,7 +4,8 @@ use super::Car;
 use super::row::Input;
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::{Command, Conditions, Electric, StartStopState};
-use crate::engine::{Burn, StartStop};
+use crate::engine::starter_generator::Flow;
+use crate::engine::{Burn, EngineAtTemperature, StartStop};
 use crate::math::{Real, larger, physics};
 use crate::thermal::{COOLANT, Heat, SUMP};
 use crate::transmission::component::Component;
@@ -14,6 +15,8 @@ use crate::transmission::{StepOutput, Transmission, TransmissionState};
 pub(super) struct Stopping<'a> {
     on: &'a StartStop,
     command: Command,
+    /// What is asked of alternator or starter-generator.
+    flow: Flow,
 }
 
 impl<'a> Stopping<'a> {
@@ -46,7 +49,11 @@ impl<'a> Stopping<'a> {
             dt_s: step.dt_s,
         };
         let command = on.command(&now, past);
-        Some(Stopping { on, command })
+        Some(Stopping {
+            on,
+            command,
+            flow: Flow::default(),
+        })
     }
 
     /// True with the engine at rest.
@@ -54,13 +61,19 @@ impl<'a> Stopping<'a> {
         self.command == Command::Stop
     }
 
-    /// Power at the alternator's shaft that is to charge the store, W.
-    pub fn charging_w(&self, past: &StartStopState, dt_s: f64) -> f64 {
+    /// Asks alternator or starter-generator of a running engine, with the power at the wheels, W, and the engine's speed, rad/s, for a step; the power at
+    /// its shaft, W, less that of the consumers which the store feeds.
+    pub fn charging_w(
+        &mut self,
+        engine: &EngineAtTemperature,
+        at: (f64, f64),
+        past: &StartStopState,
+        dt_s: f64,
+    ) -> f64 {
         if self.command == Command::Run {
-            self.on.charging_w(past, dt_s)
-        } else {
-            0.0
+            self.flow = self.on.flow(engine, at, past, dt_s);
         }
+        self.flow.shaft_w - self.flow.consumers * engine.engine.electrical_w
     }
 
     /// Advances store, starter and alternator by the step, and pressure and electric pump of a stopped CVT.
@@ -91,9 +104,9 @@ impl<'a> Stopping<'a> {
             Command::Start => {
                 Electric::starting(on, engine, input.heat.node_k[COOLANT], input.dt_s)
             }
-            Command::Run => Electric::charging(on, engine, output.engine_rad_s),
+            Command::Run => Electric::running(on, engine, output.engine_rad_s, &self.flow),
         };
-        past.drawn_j = electric.drawn_j(past.drawn_j, input.dt_s);
+        past.drawn_j = electric.drawn_j(on, past.drawn_j, input.dt_s);
         electric
     }
 }

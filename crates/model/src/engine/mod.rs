@@ -20,6 +20,7 @@ mod keys;
 mod motored;
 mod start;
 pub mod start_stop;
+pub mod starter_generator;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::{ENGINE, EngineKeys};

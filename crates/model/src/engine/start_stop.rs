@@ -15,8 +15,9 @@
 //! The trace is known, so a start is in time. A step is either with or without engine: a drive cuts its trace where a stop begins and ends. A cycle
 //! that switches the engine off itself goes before all of it. Electric losses heat no node.
 
+use super::starter_generator::{Before, Flow, StarterGenerator, StarterGeneratorKeys};
 use super::{Engine, EngineAtTemperature};
-use crate::keys::{Values, keys};
+use crate::keys::{Repeat, Values, keys};
 use crate::math::{Real, clamp, exp, larger, physics, smaller};
 use crate::prime_mover::PrimeMover;
 
@@ -61,6 +62,8 @@ pub struct StartStop {
     pub pump_pa: f64,
     /// Hydraulic over electric power of that pump.
     pub pump: f64,
+    /// Belt starter-generator in place of starter and alternator, if there is one.
+    pub machine: Option<StarterGenerator>,
 }
 
 /// State of start-stop between steps.
@@ -78,7 +81,7 @@ pub struct StartStopState {
     pub stood_s: f64,
     /// Time of the present stop, s.
     pub stopped_s: f64,
-    /// Energy taken out of the full store, J.
+    /// Energy taken out of the store, J: of the full one, or of the charge that a starter-generator keeps (SG-2), and then below zero above it.
     pub drawn_j: f64,
 }
 
@@ -153,17 +156,56 @@ impl StartStop {
             && now.ambient_k >= self.ambient_k
             && now.rest_s > self.lead_s + SAME_S
             && past.on_s >= self.first_stop_after_s - SAME_S;
-        let left_j = self.store_j - past.drawn_j;
+        let left_j = self.kept_j() - past.drawn_j;
         if past.stopped {
             return allowed
-                && left_j > STARTS_BELOW * self.store_j
+                && left_j > STARTS_BELOW * self.kept_j()
                 && past.stopped_s < self.stop_max_s - SAME_S; // SS-2
         }
         allowed
-            && left_j > STOPS_ABOVE * self.store_j
+            && left_j > STOPS_ABOVE * self.kept_j()
             && past.stood_s >= self.delay_s - SAME_S
             && past.ran_s >= self.min_run_s - SAME_S
             && past.fastest_m_s > self.min_speed_m_s // SS-1
+    }
+
+    /// Energy that the store has without recuperation, J (SG-2).
+    pub fn kept_j(&self) -> f64 {
+        match &self.machine {
+            Some(machine) => machine.kept * self.store_j,
+            None => self.store_j,
+        }
+    }
+
+    /// What a running engine's starter-generator does in a step; else what charges the store (SG-2 to SG-5, EL-2).
+    pub fn flow(
+        &self,
+        engine: &EngineAtTemperature,
+        (wheel_w, engine_rad_s): (f64, f64),
+        past: &StartStopState,
+        dt_s: f64,
+    ) -> Flow {
+        let charging = Flow {
+            shaft_w: self.charging_w(past, dt_s),
+            consumers: 0.0,
+        };
+        let Some(machine) = &self.machine else {
+            return charging;
+        };
+        let now = Before {
+            wheel_w,
+            engine_rad_s,
+            drag_nm: engine.own_drag_nm(engine_rad_s),
+            above_j: -past.drawn_j,
+            room_j: self.store_j - self.kept_j() + past.drawn_j,
+            consumers_w: self.alternator * engine.engine.electrical_w,
+            dt_s,
+        };
+        let flow = machine.flow(&now, self.store);
+        if flow == Flow::default() && past.drawn_j > 0.0 {
+            return charging;
+        }
+        flow
     }
 
     /// Pressure of a stopped CVT that had another before, Pa (SS-5).
@@ -177,10 +219,18 @@ impl StartStop {
         self.pump_pa * need_m3_s / self.pump // EP-1
     }
 
+    /// Electric power over that at the shaft of what charges the store: alternator, or starter-generator (SG-1).
+    fn generator(&self) -> f64 {
+        match &self.machine {
+            Some(machine) => machine.efficiency,
+            None => self.alternator,
+        }
+    }
+
     /// Shaft power that charges the store in a step, W (EL-2).
     pub fn charging_w(&self, past: &StartStopState, dt_s: f64) -> f64 {
-        let wanted_w = past.drawn_j / (self.store * larger(FILL_S, dt_s));
-        smaller(wanted_w, self.charge_w) / self.alternator // EL-2
+        let wanted_w = larger(past.drawn_j, 0.0) / (self.store * larger(FILL_S, dt_s));
+        smaller(wanted_w, self.charge_w) / self.generator() // EL-2
     }
 }
 
@@ -248,7 +298,7 @@ impl Electric {
         let (e, w) = (engine.engine, engine.idle_rad_s);
         let kinetic_w = 0.5 * e.inertia_kg_m2 * w * w / dt_s;
         let crank_w = 0.5 * engine.own_drag_nm(w) * w * on.crank_s / dt_s; // SS-4
-        let store_w = (kinetic_w + crank_w) / (on.starter * on.store); // SS-4, EL-2
+        let store_w = (kinetic_w + crank_w) / (on.starter() * on.store); // SS-4, EL-2
         let idling = engine.burn(w, engine.accessories_nm(w));
         let idle_kg = on.start_idle_s * (idling.fuel_kg_s - engine.start_kg_s);
         let cold_kg = e.start_kg * super::start::cold_share(coolant_k);
@@ -262,27 +312,41 @@ impl Electric {
         }
     }
 
-    /// While the engine runs at a speed with a shaft power wanted for charging, W (EL-2).
-    pub fn charging(on: &StartStop, engine: &EngineAtTemperature, speed_rad_s: f64) -> Self {
-        let charging_w = engine.charging_w * engine.charging_share(speed_rad_s);
-        let stored_w = on.alternator * on.store * charging_w; // EL-2
+    /// While the engine runs at a speed with what is asked of alternator or starter-generator (EL-2, SG-1, SG-4).
+    pub fn running(
+        on: &StartStop,
+        engine: &EngineAtTemperature,
+        speed_rad_s: f64,
+        flow: &Flow,
+    ) -> Self {
+        let share = engine.charging_share(speed_rad_s);
+        let charging_w = flow.shaft_w * share;
+        let through = on.generator() * on.store;
+        let stored_w = match charging_w < 0.0 {
+            true => charging_w / through,  // SG-1
+            false => through * charging_w, // EL-2
+        };
+        let consumers_w = flow.consumers * share * on.alternator * engine.engine.electrical_w;
+        let given_w = consumers_w / on.store; // EL-1
         Electric {
-            store_w: -stored_w,
-            loss_w: charging_w - stored_w, // EL-3
+            store_w: given_w - stored_w,
+            loss_w: charging_w - stored_w + (given_w - consumers_w), // EL-3
             charging_w,
+            consumers_w,
             ..Electric::default()
         }
     }
 
-    /// The energy that is out of the store after a step.
-    pub fn drawn_j(&self, before_j: f64, dt_s: f64) -> f64 {
-        larger(before_j + self.store_w * dt_s, 0.0) // EL-2
+    /// The energy that is out of the store after a step, J.
+    pub fn drawn_j(&self, on: &StartStop, before_j: f64, dt_s: f64) -> f64 {
+        let full_j = on.kept_j() - on.store_j;
+        larger(before_j + self.store_w * dt_s, full_j) // EL-2
     }
 }
 
 keys! {
     /// Keys of `[engine.start_stop]`.
-    START_STOP: StartStopKeys = "start_stop" [] {
+    START_STOP: StartStopKeys = "start_stop" [StarterGeneratorKeys::TABLE.repeated(Repeat::Optional)] {
         coolant_min_degc: or(40.0, number(-40.0, 120.0)), "coolant from which the engine may stop", ["SS-1"];
         coolant_max_degc: or(105.0, number(-40.0, 130.0)), "coolant up to which it may stop", ["SS-1"];
         sump_min_degc: or(25.0, number(-60.0, 150.0)), "transmission oil of a CVT from which it may stop", ["SS-1"];
@@ -334,6 +398,7 @@ impl StartStop {
             pressure_s: number(&START_STOP.pressure_decay_s),
             pump_pa: number(&START_STOP.pump_bar),
             pump: number(&START_STOP.pump_efficiency),
+            machine: StarterGenerator::from_values(&s.table(StarterGeneratorKeys::TABLE.name)),
         };
         let ranges = [
             (
@@ -356,19 +421,27 @@ impl StartStop {
         Some(on)
     }
 
+    /// Shaft power of a start over electric power: of the starter, or of the starter-generator (SG-1).
+    fn starter(&self) -> f64 {
+        match &self.machine {
+            Some(machine) => machine.efficiency,
+            None => self.starter,
+        }
+    }
+
     /// The energy that a start of the warm engine takes out of the store, J.
     fn start_j(&self, engine: &Engine) -> f64 {
         let w = engine.idle_hot_rad_s;
         let friction_pa = engine.fuel.hot_friction_pa(engine.piston_m_s(w));
         let drag_nm = engine.drag_nm_of(w, friction_pa);
         let shaft_j = 0.5 * w * (engine.inertia_kg_m2 * w + drag_nm * self.crank_s);
-        shaft_j / (self.starter * self.store)
+        shaft_j / (self.starter() * self.store)
     }
 
     /// A store from which the engine cannot be started is reported.
     pub(super) fn check_store<V: Values>(&self, s: &V, engine: &Engine) {
         let least_j = self.start_j(engine) / STARTS_BELOW;
-        if self.store_j < least_j {
+        if self.kept_j() < least_j {
             s.complain(
                 START_STOP.store_wh.name,
                 &format!("at least {:.2} Wh", least_j / 3600.0),
