@@ -61,8 +61,8 @@ impl<'a> Stopping<'a> {
         self.command == Command::Stop
     }
 
-    /// Asks alternator or starter-generator of a running engine, with the power at the wheels, W, and the engine's speed, rad/s, for a step; the power at
-    /// its shaft, W, less that of the consumers which the store feeds.
+    /// Sets what alternator or starter-generator of a running engine does in a step, by the power at the wheels, W, and the engine's speed, rad/s; the power
+    /// at its shaft, W, less that of the consumers which the store feeds.
     pub fn charging_w(
         &mut self,
         engine: &EngineAtTemperature,
