@@ -508,11 +508,14 @@ pub fn check() {
         .filter(|file| file.kind != Kind::Class)
         .map(|file| Plain::new(file.kind, &file.keys))
         .collect();
+    let machine = |key: &str| format!("engine.start_stop.starter_generator.{key}");
     // No shipped car has a table for its twin, or start-stop: this one is tried last, for these keys only.
     let twin = Options {
         set: vec![
             Override::number("twin.gears", 6.0),
             Override::number("engine.start_stop.delay_s", 0.5),
+            Override::number(&machine("recuperation_w"), 5e3),
+            Override::number(&machine("torque_nm"), 100.0),
         ],
         ..Options::default()
     };

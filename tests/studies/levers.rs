@@ -389,7 +389,7 @@ fn built_in_levers_change_something() {
         let distinct: BTreeSet<&String> = groups.iter().collect();
         assert_eq!(groups.len(), distinct.len(), "{groups:?}");
     }
-    assert_eq!(count, 29);
+    assert_eq!(count, 30);
 }
 
 /// A file applies to any car: levers of a built-in file that the car cannot have are left out and named.

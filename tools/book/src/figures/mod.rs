@@ -43,6 +43,7 @@ pub const PAGES: [Page; 26] = [
         "geometry",
         &[
             "transmission.cvt.belt.kind",
+            "transmission.cvt.ranges",
             "transmission.cvt.belt.length_m",
             "transmission.cvt.ratio.low",
             "transmission.cvt.ratio.high",

@@ -89,9 +89,11 @@ fn index(source: &Path) -> Result<String, String> {
         "physics_checks",
         "rigs",
         "start_stop",
+        "starter_generator",
         "steps",
         "studies",
         "torque_converter",
+        "two_ranges",
     ]) {
         let path = source.join(format!("{stem}.md"));
         let page =

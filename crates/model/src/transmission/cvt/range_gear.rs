@@ -499,7 +499,7 @@ mod tests {
         let set = set();
         let turning = set.in_oil(step, super::super::NU_REFERENCE_M2_S);
         near(turning.loss_nm(50.0, 200.0), 11.079_66); // 50 0.221593
-        near(turning.loss_nm(-50.0, 200.0), 7.428_8); // 50 (1 - 0.851424)
+        near(turning.loss_nm(-50.0, 200.0), 7.428_76); // 50 (1 - 0.851424)
     }
 
     /// Truth: RG-2 as it is written, on both sides of each bound.
