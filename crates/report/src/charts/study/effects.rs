@@ -27,7 +27,7 @@ const GAP: f64 = 14.0;
 /// Maximum width of a panel, pixels.
 const WIDEST: f64 = 480.0;
 /// Most room of words that are turned, and room below them for the name of the factor, pixels.
-const MAX_TURNED: f64 = 90.0;
+const MAX_TURNED: f64 = 86.0;
 const BELOW_TURNED: f64 = 30.0;
 const LEVEL: f64 = 11.0;
 const TITLE: f64 = 12.0;
