@@ -4,7 +4,7 @@ use super::controller::{FREE_OVER_IDLE, Moment, RatioDemand, Shifted, direction_
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
 use super::evaluate::Step;
 use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
-use super::range_gear::RangeStep;
+use super::range_gear::{InRange, RangeGear, RangeStep};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
 use crate::lubricant::OilState;
@@ -86,6 +86,88 @@ fn full_load_rad_s<P: PrimeMover<R>, R: Real>(
 }
 
 #[physics]
+impl<R: Real> Shift<R> {
+    /// Nothing turns: the ratio stays, and the low range is engaged (RC-4, RG-2).
+    fn at_rest(share: R, kept: &Shifting<R>, sets: Option<&RangeGear<R>>) -> Self {
+        let zero = share.splat(0.0);
+        Shift {
+            ratio: kept.ratio,
+            rate_per_s: zero,
+            flow_m3_s: zero,
+            held: zero.splat_mask(false),
+            kept: Shifting {
+                share,
+                direction: kept.direction.clone(),
+                ratio: kept.ratio,
+                range: sets.map_or(kept.range, |set| set.in_low()),
+            },
+            primaries: [zero; 2],
+            locks: zero.splat_mask(false),
+            range: sets.map(|set| set.step(&set.in_low(), zero)),
+        }
+    }
+}
+
+/// The set in a step, with the speeds of the final drive at its ends, rad/s, and the range after it (RG-2).
+#[physics]
+fn set_in_step<R: Real>(
+    set: &RangeGear<R>,
+    (kept, held): (&Shifting<R>, &Option<Hold<R>>),
+    cvt: &Cvt<R>,
+    (demand, begins): (&RatioDemand<R>, &Moment<R>),
+    behind: [R; 2],
+) -> (RangeStep<R>, InRange<R>) {
+    let Some(hold) = held else {
+        let targets = [
+            cvt.ratio.target_rad_s(&demand.at(begins)),
+            cvt.ratio.target_rad_s(demand),
+        ];
+        return set.driven(&kept.range, (targets, behind), demand.coupled, demand.dt_s);
+    };
+    let step = set.step(&kept.range, behind[0].splat(demand.dt_s));
+    let mut next = kept.range;
+    next.ratio = step.ends[1];
+    if hold.paced {
+        let asked = hold.ratio * step.ends[1] * behind[1];
+        next.low = set.wants_low(&kept.range, asked, behind[1], demand.coupled);
+    }
+    (step, next)
+}
+
+/// The way of the ratio in a step.
+#[physics]
+fn made<R: Real>(
+    cvt: &Cvt<R>,
+    demand: &RatioDemand<R>,
+    held: Option<&Hold<R>>,
+    next: &InRange<R>,
+) -> Shifted<R> {
+    let made = match held {
+        Some(hold) if hold.paced => cvt.ratio.paced(demand, hold.ratio), // RC-15
+        Some(hold) => {
+            let end = hold.end.unwrap_or(hold.ratio);
+            let change = (end / demand.ratio_before).ln();
+            return Shifted {
+                mean: hold.ratio,
+                end,
+                change,
+                last: change,
+                held: change.splat_mask(false),
+            }; // RC-12, RC-16
+        }
+        None => cvt.ratio.step(demand),
+    };
+    match &cvt.ranges {
+        // RG-6: the belt waits in low.
+        Some(set) if set.past_belt && next.low.any() => {
+            let waits = cvt.ratio.paced(demand, cvt.ratio.low);
+            made.replaced(next.low, &waits)
+        }
+        _ => made,
+    }
+}
+
+#[physics]
 fn shift<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
     input: &StepInput<P, R>,
@@ -111,21 +193,7 @@ fn shift<P: PrimeMover<R>, R: Real>(
     let primary_rad_s = cvt.primary_rad_s(kept.ratio, in_range(behind_rad_s), past);
     let zero = share.splat(0.0);
     if zero.ge(primary_rad_s).all() {
-        return Shift {
-            ratio: kept.ratio,
-            rate_per_s: zero,
-            flow_m3_s: zero,
-            held: zero.splat_mask(false),
-            kept: Shifting {
-                share,
-                direction: kept.direction.clone(),
-                ratio: kept.ratio,
-                range: sets.map_or(kept.range, |set| set.in_low()),
-            },
-            primaries: [zero; 2],
-            locks: zero.splat_mask(false),
-            range: sets.map(|set| set.step(&set.in_low(), zero)),
-        }; // RC-4
+        return Shift::at_rest(share, kept, sets); // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let most = route.asked.most_flow_m3_s;
@@ -168,27 +236,8 @@ fn shift<P: PrimeMover<R>, R: Real>(
     begins.full_load_rad_s = full_load_rad_s(cvt, engine, &demand.at(&begins), efficiency);
     let (mut range, mut next) = (None, kept.range);
     if let Some(set) = sets {
-        let step = match held {
-            Some(hold) => {
-                let step = set.step(&kept.range, zero + input.dt_s);
-                if hold.paced {
-                    let asked = hold.ratio * step.ends[1] * behind[1];
-                    next.low = set.wants_low(&kept.range, asked, behind[1], demand.coupled);
-                }
-                step
-            }
-            None => {
-                let targets = [
-                    cvt.ratio.target_rad_s(&demand.at(&begins)),
-                    cvt.ratio.target_rad_s(&demand),
-                ];
-                let step;
-                (step, next) =
-                    set.driven(&kept.range, (targets, behind), demand.coupled, input.dt_s);
-                step
-            }
-        };
-        next.ratio = step.ends[1];
+        let step;
+        (step, next) = set_in_step(set, (kept, held), cvt, (&demand, &begins), behind);
         secondaries = [step.ends[0] * behind[0], step.ends[1] * behind[1]]; // RG-1
         demand.secondary_rad_s = secondaries[1];
         demand.primary_rad_s = cvt.primary_rad_s(kept.ratio, step.mean * behind_rad_s, past);
@@ -198,30 +247,7 @@ fn shift<P: PrimeMover<R>, R: Real>(
     if !demand.coupled.all() {
         demand.locks_at = locks_at(past.engine_rad_s / kept.ratio, secondaries);
     }
-    let made = match held {
-        Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
-        Some(hold) => {
-            let end = hold.end.unwrap_or(hold.ratio);
-            let change = (end / kept.ratio).ln();
-            Shifted {
-                mean: hold.ratio,
-                end,
-                change,
-                last: change,
-                held: zero.splat_mask(false),
-            } // RC-12, RC-16
-        }
-        None => cvt.ratio.step(&demand),
-    };
-    let controlled = held.as_ref().is_none_or(|hold| hold.paced);
-    let made = match sets {
-        // RG-6: the belt waits in low.
-        Some(set) if set.past_belt && controlled && next.low.any() => {
-            let waits = cvt.ratio.paced(&demand, cvt.ratio.low);
-            made.replaced(next.low, &waits)
-        }
-        _ => made,
-    };
+    let made = made(cvt, &demand, held.as_ref(), &next);
     let change = made.change;
     let volume = change.gt(0.0).select(down_m3 * change, -up_m3 * change);
     let per_s = input.dt_s.recip();
@@ -328,10 +354,8 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
     }
     let at = &*belt;
     let behind_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
-    let secondary_rad_s = match &shift.range {
-        Some(range) => range.mean * behind_rad_s, // RG-1
-        None => behind_rad_s,
-    };
+    let over_set = shift.range.as_ref().map(|range| range.mean * behind_rad_s); // RG-1
+    let secondary_rad_s = over_set.unwrap_or(behind_rad_s);
     let signals = LockSignals {
         speed_m_s: input.wheel.speed_m_s,
         sump_k,

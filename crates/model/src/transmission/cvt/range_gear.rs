@@ -128,13 +128,13 @@ impl<R: Real> RangeGear<R> {
             mean: one,
             drives: one,
             drags: one,
-            by_low: [one - one; 2],
+            by_low: [one.splat(0.0); 2],
         }
     }
 
     /// Goes on from the range at the end of the step before (RG-3).
     pub(super) fn step(&self, now: &InRange<R>, time_s: R) -> RangeStep<R> {
-        let one = self.low.splat(1.0);
+        let (zero, one) = (self.low.splat(0.0), self.low.splat(1.0));
         let target = now.low.select(self.low, one);
         let driven = now.low.select(one + self.mesh_share, one); // RG-4
         let engaged = RangeStep {
@@ -142,7 +142,7 @@ impl<R: Real> RangeGear<R> {
             mean: target,
             drives: driven,
             drags: one / driven,
-            by_low: [driven, one / driven].map(|all| now.low.select(all, one - one)),
+            by_low: [driven, one / driven].map(|all| now.low.select(all, zero)),
         };
         let settled = now.ratio.bits_eq(target);
         if settled.all() {
@@ -157,7 +157,7 @@ impl<R: Real> RangeGear<R> {
         let changing = moves.select((end - now.ratio) / moved, now.ratio);
         let share = moves.select(moved.abs() / most, one);
         // RG-4: who carries the torque meanwhile.
-        let on_way = [one - one, changing / self.low];
+        let on_way = [zero, changing / self.low];
         let over_step = |on_way: R, then: R| then + share * (on_way - then);
         RangeStep {
             ends: [now.ratio, settled.select(target, end)],
@@ -193,7 +193,7 @@ impl<R: Real> RangeGear<R> {
         let ends = now.low.select(self.most_behind_rad_s, one * f64::INFINITY);
         let [from, to] = [0, 1].map(|k| (targets[k] / bound).min(ends) - behind[k]);
         let at_once = other(first);
-        let crosses = at_once.select(one - one, (from / (from - to)).clamp(0.0, 1.0));
+        let crosses = at_once.select(one.splat(0.0), (from / (from - to)).clamp(0.0, 1.0));
         let share = changes.select(crosses, one);
         let before = self.step(now, share * dt_s);
         let ratio = before.ends[1];
@@ -412,6 +412,10 @@ impl RangeGear {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "a range that is engaged has its ratio exactly"
+)]
 mod tests {
     use super::*;
 
