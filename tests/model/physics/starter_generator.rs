@@ -148,7 +148,7 @@ fn fuel_does_not_depend_on_the_step() {
             .fuel_kg
     });
     let percent = 100.0 * (coarse / fine - 1.0);
-    assert!(percent.abs() < 0.5, "{percent} %");
+    assert!(percent.abs() < 0.3, "{percent} %");
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::transmission::{StepOutput, Transmission, TransmissionState};
 pub(super) struct Stopping<'a> {
     on: &'a StartStop,
     command: Command,
-    /// What is asked of alternator or starter-generator.
+    /// Shaft power of alternator or starter-generator in the step.
     flow: Flow,
 }
 

@@ -177,7 +177,7 @@ impl StartStop {
         }
     }
 
-    /// What a running engine's starter-generator does in a step; else what charges the store (SG-2 to SG-5, EL-2).
+    /// Sets the power of a running engine's starter-generator in a step by SG-2 to SG-5, that of an alternator by EL-2.
     pub fn flow(
         &self,
         engine: &EngineAtTemperature,

@@ -58,7 +58,7 @@ pub struct InRange<R: Real = f64> {
 pub(crate) struct RangeStep<R: Real = f64> {
     /// Ratio at the beginning and end.
     pub ends: [R; 2],
-    /// Its mean.
+    /// Mean ratio by time.
     pub mean: R,
     /// Power into the set over that out of it where it drives, without drag.
     drives: R,
